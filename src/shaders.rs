@@ -9,7 +9,7 @@ use std::ops::Range;
 use std::sync::OnceLock;
 
 /// One entry point, compiled.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Shader {
     /// `file.variant`, as error messages and object names say it.
     pub name: &'static str,
@@ -46,7 +46,7 @@ impl Shader {
 }
 
 /// Where the words of a module are.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Code {
     /// In memory.
     Words(&'static [u32]),
@@ -82,7 +82,7 @@ pub(crate) fn find(name: &str) -> Option<&'static Shader> {
 pub const SOFTWARE_ID: u32 = 0;
 
 /// The stage of an entry point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Stage {
     /// With its workgroup size.
     Compute {
@@ -96,7 +96,7 @@ pub enum Stage {
 }
 
 /// One variable of a shader that a host fills.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct BindingSlot {
     /// The name in WGSL.
     pub name: &'static str,
@@ -107,7 +107,7 @@ pub struct BindingSlot {
 }
 
 /// What a binding takes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum BindingKind {
     /// A uniform buffer with a dynamic offset: one slot of the parameter ring, of this many bytes.
     Uniform(u32),

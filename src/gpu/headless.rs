@@ -321,6 +321,10 @@ impl Headless {
 
 impl Drop for Headless {
     fn drop(&mut self) {
+        // The device, whose end says the same, may be shared and stay.
+        if !std::thread::panicking() {
+            self.assert_no_validation_messages();
+        }
         let Some(file) = self
             .cache_file
             .as_deref()

@@ -40,6 +40,7 @@ pub(crate) mod owned;
 mod pace;
 mod parameters;
 pub(crate) mod pipeline;
+mod pipelines;
 mod portability;
 mod raster;
 #[cfg(feature = "conformance")]
@@ -89,8 +90,7 @@ pub use rendering::{
 pub use requirements::{Feature, Item, Limit, Need, REQUIREMENTS, Requirement};
 #[doc(hidden)]
 pub use sampler::Sampler;
-#[cfg(feature = "conformance")]
-pub(crate) use shared_device::SharedDevice;
+pub use shared_device::SharedDevice;
 pub use tile::Tile;
 pub(crate) use tile::{Groups, boxes, group_count, within};
 #[doc(hidden)]
@@ -263,7 +263,8 @@ impl Gpu {
         unsafe { self.store().retire(&self.device, completed) };
     }
 
-    /// How many raw objects of each kind exist: those with an owner and those that wait to be destroyed.
+    /// How many raw objects of each kind exist: those with an owner and those that wait to be destroyed. Pipelines of a device
+    /// of our own belong to that, and are not counted.
     pub fn live_objects(&self) -> BTreeMap<&'static str, usize> {
         self.store().live()
     }

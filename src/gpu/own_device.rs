@@ -2,7 +2,7 @@
 
 use super::{
     Error, Features, ValidationMode, devices, error::Doing, instance::Candidate,
-    instance::OwnInstance, portability_subset,
+    instance::OwnInstance, pipelines::Pipelines, portability_subset,
 };
 use ash::{khr, vk};
 use std::fmt;
@@ -15,6 +15,7 @@ pub(super) struct OwnDevice {
     /// Those that were asked for. Whoever holds one may submit to it.
     pub queues: Vec<Arc<Mutex<vk::Queue>>>,
     pub features: Features,
+    pub pipelines: Pipelines,
     // Last: fields are dropped in this order, after the device was destroyed.
     pub instance: OwnInstance,
 }
@@ -96,6 +97,7 @@ impl OwnDevice {
             device,
             queue_family,
             features,
+            pipelines: Pipelines::default(),
             instance,
         })
     }
@@ -123,6 +125,9 @@ impl fmt::Debug for OwnDevice {
 impl Drop for OwnDevice {
     fn drop(&mut self) {
         // SAFETY: we made it, and everything made on it is gone: the `Gpu` that owns us sees to that.
-        unsafe { self.device.destroy_device(None) };
+        unsafe {
+            self.pipelines.destroy_all(&self.device);
+            self.device.destroy_device(None);
+        }
     }
 }

@@ -4,7 +4,7 @@
 use super::recorder;
 use super::{
     Bindings, Buffer, Error, Gpu, Groups, Layout, Tile, boxes, error::within, layout::stage_flag,
-    owned::Own,
+    owned::Own, pipelines::Key, pipelines::Pipeline,
 };
 use crate::shaders::{Shader, Stage};
 use ash::vk;
@@ -14,7 +14,7 @@ use std::sync::{Arc, atomic::Ordering};
 /// One compute shader, ready to be dispatched.
 #[derive(Debug)]
 pub struct ComputePipeline {
-    raw: Own<vk::Pipeline>,
+    raw: Pipeline,
     layout: Layout,
     workgroup: [u32; 3],
 }
@@ -51,17 +51,22 @@ impl ComputePipeline {
             allowed,
         )?;
         let layout = Layout::new(gpu, &[shader], shader.name)?;
-        let module = module(gpu, shader)?;
-        let info = vk::ComputePipelineCreateInfo::default()
-            // Parts of a dispatch begin at workgroups of their own.
-            .flags(vk::PipelineCreateFlags::DISPATCH_BASE)
-            .stage(stage(shader, &module))
-            .layout(layout.raw());
-        // SAFETY: module and layout were made of the same shader, whose SPIR-V `build.rs` has validated.
-        let raw = first(gpu, doing, |device| unsafe {
-            device.create_compute_pipelines(gpu.pipeline_cache, &[info], None)
+        let key = Key {
+            shaders: vec![*shader],
+            raster: None,
+        };
+        let raw = Pipeline::new(gpu, key, shader.name, || {
+            let module = module(gpu, shader)?;
+            let info = vk::ComputePipelineCreateInfo::default()
+                // Parts of a dispatch begin at workgroups of their own.
+                .flags(vk::PipelineCreateFlags::DISPATCH_BASE)
+                .stage(stage(shader, &module))
+                .layout(layout.raw());
+            // SAFETY: module and layout were made of the same shader, whose SPIR-V `build.rs` has validated.
+            first(gpu, doing, |device| unsafe {
+                device.create_compute_pipelines(gpu.pipeline_cache, &[info], None)
+            })
         })?;
-        gpu.name(raw.get(), shader.name);
         Ok(Self {
             raw,
             layout,
@@ -248,12 +253,17 @@ pub(super) fn wrong_stage(doing: String, wanted: &str, shader: &Shader) -> Error
     }
 }
 
-/// The SPIR-V of a shader on the device; needed only until its pipeline is made.
-pub(crate) fn module(gpu: &Arc<Gpu>, shader: &Shader) -> Result<Own<vk::ShaderModule>, Error> {
-    let words = match gpu.has_slow_conversions() {
+/// The SPIR-V of a shader, as this device gets it.
+pub(super) fn words(gpu: &Gpu, shader: &Shader) -> Vec<u32> {
+    match gpu.has_slow_conversions() {
         true => shader.without_conversions(),
         false => shader.folded(gpu.is_llvmpipe()),
-    };
+    }
+}
+
+/// The SPIR-V of a shader on the device; needed only until its pipeline is made.
+pub(crate) fn module(gpu: &Arc<Gpu>, shader: &Shader) -> Result<Own<vk::ShaderModule>, Error> {
+    let words = words(gpu, shader);
     let info = vk::ShaderModuleCreateInfo::default().code(&words);
     // SAFETY: the SPIR-V was validated when it was built.
     let raw = gpu.call(
@@ -284,9 +294,9 @@ pub(crate) fn first(
     gpu: &Arc<Gpu>,
     doing: impl FnOnce() -> String,
     make: impl FnOnce(&ash::Device) -> Result<Vec<vk::Pipeline>, (Vec<vk::Pipeline>, vk::Result)>,
-) -> Result<Own<vk::Pipeline>, Error> {
+) -> Result<vk::Pipeline, Error> {
     // On failure Vulkan leaves null handles behind.
     let raw = gpu.call(doing, |device| make(device).map_err(|(_, result)| result))?;
     gpu.pipelines_made.fetch_add(1, Ordering::Relaxed);
-    Ok(Own::new(gpu, raw[0]))
+    Ok(raw[0])
 }

@@ -3,8 +3,8 @@
 #[cfg(feature = "conformance")]
 use super::recorder;
 use super::{
-    Bindings, Buffer, Error, Gpu, Layout, owned::Own, pipeline::first, pipeline::module,
-    pipeline::stage, pipeline::wrong_stage,
+    Bindings, Buffer, Error, Gpu, Layout, pipeline::first, pipeline::module, pipeline::stage,
+    pipeline::wrong_stage, pipelines::Key, pipelines::Pipeline,
 };
 use crate::shaders::{Shader, Stage};
 use ash::vk;
@@ -109,7 +109,7 @@ pub struct RasterDesc<'a> {
 /// Two shaders, ready to draw. Viewport and scissor are dynamic.
 #[derive(Debug)]
 pub struct RasterPipeline {
-    raw: Own<vk::Pipeline>,
+    raw: Pipeline,
     layout: Layout,
 }
 
@@ -140,6 +140,22 @@ impl RasterPipeline {
         }
         check_formats(gpu, desc)?;
         let layout = Layout::new(gpu, &[desc.vertex, desc.fragment], name)?;
+        let key = Key {
+            shaders: vec![*desc.vertex, *desc.fragment],
+            raster: Some((topology, desc.target, desc.blend, desc.depth)),
+        };
+        let make = || Self::compiled(gpu, desc, topology, &layout);
+        let raw = Pipeline::new(gpu, key, name, make)?;
+        Ok(Self { raw, layout })
+    }
+
+    fn compiled(
+        gpu: &Arc<Gpu>,
+        desc: &RasterDesc<'_>,
+        topology: vk::PrimitiveTopology,
+        layout: &Layout,
+    ) -> Result<vk::Pipeline, Error> {
+        let doing = || format!("make raster pipeline `{}`", desc.fragment.name);
         let (vertex, fragment) = (module(gpu, desc.vertex)?, module(gpu, desc.fragment)?);
         let stages = [stage(desc.vertex, &vertex), stage(desc.fragment, &fragment)];
         let vertex_input = vk::PipelineVertexInputStateCreateInfo::default();
@@ -179,11 +195,9 @@ impl RasterPipeline {
             None => info.push_next(&mut rendering),
         };
         // SAFETY: modules and layout were made of the same shaders, whose SPIR-V `build.rs` has validated.
-        let raw = first(gpu, doing, |device| unsafe {
+        first(gpu, doing, |device| unsafe {
             device.create_graphics_pipelines(gpu.pipeline_cache, &[info], None)
-        })?;
-        gpu.name(raw.get(), name);
-        Ok(Self { raw, layout })
+        })
     }
 
     /// The Vulkan handle.

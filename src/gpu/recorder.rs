@@ -72,9 +72,14 @@ type Listener = Box<dyn FnMut(&Event<'_>) + Send>;
 static IS_HEARD: AtomicBool = AtomicBool::new(false);
 static LISTENER: Mutex<Option<Listener>> = Mutex::new(None);
 
+/// Whether there is a listener.
+pub(super) fn is_heard() -> bool {
+    IS_HEARD.load(Ordering::Relaxed)
+}
+
 /// Tells the listener, where there is one.
 pub(super) fn note(event: Event<'_>) {
-    if !IS_HEARD.load(Ordering::Relaxed) {
+    if !is_heard() {
         return;
     }
     let mut listener = LISTENER.lock().unwrap_or_else(PoisonError::into_inner);

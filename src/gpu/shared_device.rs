@@ -1,8 +1,9 @@
 //! A device of our own and its queues, for one thread or for several with a [`Headless`] each.
 
 use super::{
-    API_VERSION, DeviceChoice, Error, Gpu, Headless, HostDevice, Options, ValidationMode, cache,
-    instance::Candidate, instance::OwnInstance, own_device::OwnDevice, validation::Messages,
+    API_VERSION, DeviceChoice, Error, Gpu, Headless, HostDevice, Options, Validation,
+    ValidationMode, cache, instance::Candidate, instance::OwnInstance, own_device::OwnDevice,
+    validation::Messages,
 };
 use std::sync::Arc;
 
@@ -19,12 +20,7 @@ impl SharedDevice {
     ///
     /// # Errors
     /// As [`Headless::new`].
-    #[cfg(feature = "conformance")]
-    pub fn new(
-        choice: &DeviceChoice,
-        validation: super::Validation,
-        queues: u32,
-    ) -> Result<Self, Error> {
+    pub fn new(choice: &DeviceChoice, validation: Validation, queues: u32) -> Result<Self, Error> {
         let mode = validation.mode()?;
         Self::of(OwnInstance::new(mode)?, mode, choice, queues)
     }
@@ -47,13 +43,12 @@ impl SharedDevice {
     }
 
     /// How many queues there are.
-    #[cfg(feature = "conformance")]
     pub fn queues(&self) -> usize {
         self.own.queues.len()
     }
 
     /// What the `user`th of its users, from 0, works with: a queue, which it has for itself where there are as many as
-    /// users, and memory, pipelines and a command buffer of its own. The device lives until the last of these is gone.
+    /// users, and memory and a command buffer of its own. Pipelines are shared. The device lives until the last of these is gone.
     ///
     /// # Errors
     /// As [`Headless::new`].

@@ -11,7 +11,8 @@ use std::{
     time::{Duration, Instant},
 };
 
-const FILM: &str = "animate phantom:head,n=24 --turntable 24 --size 64x48 --device reference";
+const FILM: &str =
+    "animate phantom:head,n=24 --mode mip --turntable 24 --size 96x72 --device reference";
 
 /// Names and bytes of what lies in a folder, journals left out.
 fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
@@ -107,7 +108,8 @@ fn killed_and_resumed(kills: u32, output: &str, of: impl Fn(&Folder) -> BTreeMap
 }
 
 #[cfg(debug_assertions)]
-const SMALL_FILM: &str = "animate phantom:fog,n=8 --turntable 24 --size 16x12 --device reference";
+const SMALL_FILM: &str =
+    "animate phantom:fog,n=8 --mode mip --turntable 24 --size 16x12 --device reference";
 
 /// Stops the film `output` after each number of frames from 1 to 20, goes on with it, and compares.
 #[cfg(debug_assertions)]

@@ -20,26 +20,43 @@ pub use stratavox::conformance::oracle::PictureCase;
 pub use stratavox::conformance::tree::{oblique_camera, ramps, waves};
 
 use glam::{DAffine3, DVec3, dvec3};
+use std::sync::OnceLock;
 use stratavox::camera::{Camera, Projection};
 use stratavox::conformance::tree::{PLACEMENTS, Placement, grid};
-use stratavox::gpu::{Caps, DeviceChoice, Headless, Options, PipelineCache};
+use stratavox::gpu::{
+    Caps, DeviceChoice, Headless, Options, PipelineCache, SharedDevice, Validation,
+};
 use stratavox::technique::{Lattice, Mode, Settings};
 use stratavox::volume::{Grid, Rescale, Volume, Voxels};
 
-/// A device without a pipeline cache; dropping it panics on a validation message.
+const INSTALLED: &str = "a Vulkan device (`make test` installs one)";
+
+/// The one device of the tests' process: drivers compile each of its pipelines once, and not once a test.
+static SHARED: OnceLock<SharedDevice> = OnceLock::new();
+
+/// A share in it, without a pipeline cache; dropping it panics on a validation message.
 pub fn device() -> Headless {
     device_with(Caps::UNLIMITED)
 }
 
 /// The same with stricter limits.
 pub fn device_with(caps: Caps) -> Headless {
-    let options = Options {
+    let make = || SharedDevice::new(&DeviceChoice::Default, Validation::FromEnvironment, 1);
+    let shared = SHARED.get_or_init(|| make().expect(INSTALLED));
+    shared.headless(0, &options(caps)).expect(INSTALLED)
+}
+
+/// A device that has no pipelines yet.
+pub fn new_device() -> Headless {
+    Headless::new(&DeviceChoice::Default, &options(Caps::UNLIMITED)).expect(INSTALLED)
+}
+
+fn options(caps: Caps) -> Options {
+    Options {
         caps: allowed(caps),
         pipeline_cache: PipelineCache::Off,
         ..Options::default()
-    };
-    Headless::new(&DeviceChoice::Default, &options)
-        .expect("a Vulkan device (`make test` installs one)")
+    }
 }
 
 /// A grid that is neither axis-aligned nor orthogonal nor isotropic, far from the origin.

@@ -1,6 +1,7 @@
 //! A function that weighs by gradients has a program of its own; one widget of no opacity makes it the general one.
 
 use super::*;
+use crate::shared::new_device;
 use stratavox::gpu::Gpu;
 use stratavox::volume::Voxels;
 
@@ -81,7 +82,7 @@ fn pictures_of_the_program_for_weights_are_those_of_the_general_one() {
                     shading: shading.clone(),
                     ..Settings::default()
                 };
-                let mut renderer = Renderer::new(device(), &volume).unwrap();
+                let mut renderer = Renderer::new(new_device(), &volume).unwrap();
                 let mut drawn = |function: &TransferFunction| {
                     let scene = Scene {
                         beside: Default::default(),

@@ -339,6 +339,7 @@ impl DepthPipeline {
         let raw = first(gpu, doing, |device| unsafe {
             device.create_graphics_pipelines(vk::PipelineCache::null(), &[info], None)
         })?;
+        let raw = Own::new(gpu, raw);
         Ok(Self { raw, layout })
     }
 
