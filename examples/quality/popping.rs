@@ -13,6 +13,9 @@ use super::studio::{Studio, transfer_of, volume_of};
 use glam::{DVec3, dvec3};
 use std::error::Error;
 use stratavox::camera::{Camera, Projection};
+use stratavox::picture::ColorSpace;
+use stratavox::technique::preclassified::preclassified;
+use stratavox::technique::splat::{Sheets, Splat};
 use stratavox::technique::{Intermediate, Settings, Technique};
 use stratavox::transfer::TransferFunction;
 use stratavox::volume::Volume;
@@ -95,7 +98,63 @@ pub fn print() -> Result<(), Box<dyn Error>> {
         }
         println!();
     }
+    print_splats(&scenes)
+}
+
+/// Sheets along an axis switch as stacks do. Sheets that face the eye turn with it: what is printed of them is by how much the
+/// change over .2 degrees across 45 is larger than that beside it.
+fn print_splats(scenes: &[Scene]) -> Result<(), Box<dyn Error>> {
+    println!("\n### Popping of splats: J, and K\n");
+    println!(
+        "| scene | axis sheets, J | image sheets, J beyond its neighbours | axis, pre-classified | image, pre-classified | axis, K | image, K | axis, pre-classified, K | image, pre-classified, K |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|");
+    for scene in scenes {
+        let (volume, transfer) = (&scene.volume, &scene.transfer);
+        let classified = preclassified(volume, transfer, 1.0, ColorSpace::Display)?;
+        let mut studios = [
+            Studio::new(volume, transfer.clone(), EXTENT)?,
+            Studio::of_classified(&classified, transfer.clone(), EXTENT)?,
+        ];
+        print!("| {} |", scene.name);
+        for studio in &mut studios {
+            let axis = splats(Sheets::Axis);
+            let of_stack = |stack| Settings {
+                stack: Some(stack),
+                ..axis.clone()
+            };
+            let a = studio.picture(&camera(45.0), of_stack(0))?;
+            let b = studio.picture(&camera(45.0), of_stack(1))?;
+            print!(" {:.3} |", jump(&a, &b));
+            let mut turned = |from: f64| -> Result<f64, Box<dyn Error>> {
+                let settings = splats(Sheets::Image);
+                let a = studio.picture(&camera(from), settings.clone())?;
+                Ok(jump(&a, &studio.picture(&camera(from + 0.2), settings)?))
+            };
+            let beside = 0.5 * (turned(44.7)? + turned(45.1)?);
+            print!(" {:.3} |", turned(44.9)? - beside);
+        }
+        let reference = film(&mut studios[0], &reference())?;
+        for studio in &mut studios {
+            for sheets in [Sheets::Axis, Sheets::Image] {
+                let found = film(studio, &splats(sheets))?;
+                print!(" {:.2} |", excess(&found, &reference));
+            }
+        }
+        println!();
+    }
     Ok(())
+}
+
+fn splats(sheets: Sheets) -> Settings {
+    Settings {
+        technique: Technique::Splat,
+        splat: Splat {
+            sheets,
+            ..Splat::default()
+        },
+        ..Settings::default()
+    }
 }
 
 /// What K is measured against: rays, 8 samples a voxel.
@@ -145,11 +204,16 @@ fn camera(degrees: f64) -> Camera {
     }
 }
 
-fn print_jump(published: Option<f64>, a: &[[f64; 2]], b: &[[f64; 2]]) {
+/// J of two pictures.
+fn jump(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
     let mean = a.iter().map(|pixel| pixel[0]).sum::<f64>();
     let changes = a.iter().zip(b).map(|(a, b)| (a[0] - b[0]).abs());
-    let jump = 100.0 * changes.clone().sum::<f64>() / mean;
-    let largest = changes.fold(0.0, f64::max);
+    100.0 * changes.sum::<f64>() / mean
+}
+
+fn print_jump(published: Option<f64>, a: &[[f64; 2]], b: &[[f64; 2]]) {
+    let changes = a.iter().zip(b).map(|(a, b)| (a[0] - b[0]).abs());
+    let (jump, largest) = (jump(a, b), changes.fold(0.0, f64::max));
     match published {
         Some(published) => print!(" {published} -> {jump:.3} ({largest:.3}) |"),
         None => print!(" {jump:.3} ({largest:.3}) |"),

@@ -68,6 +68,8 @@ pub fn transfer_of(
 pub struct Studio<'v> {
     renderer: Renderer<'v>,
     volume: &'v Volume,
+    /// Green, blue and depth of classified voxels.
+    beside: Vec<&'v Volume>,
     transfer: TransferFunction,
     extent_pixels: [u32; 2],
 }
@@ -78,10 +80,28 @@ impl<'v> Studio<'v> {
         transfer: TransferFunction,
         extent_pixels: [u32; 2],
     ) -> Result<Self, Box<dyn Error>> {
+        Self::several(&[volume], transfer, extent_pixels)
+    }
+
+    /// Of the four volumes of classified voxels.
+    pub fn of_classified(
+        parts: &'v [Volume; 4],
+        transfer: TransferFunction,
+        extent_pixels: [u32; 2],
+    ) -> Result<Self, Box<dyn Error>> {
+        Self::several(&parts.each_ref(), transfer, extent_pixels)
+    }
+
+    fn several(
+        volumes: &[&'v Volume],
+        transfer: TransferFunction,
+        extent_pixels: [u32; 2],
+    ) -> Result<Self, Box<dyn Error>> {
         let device = Headless::new(&DeviceChoice::Default, &Options::default())?;
         Ok(Self {
-            renderer: Renderer::new(device, volume)?,
-            volume,
+            renderer: Renderer::several(device, volumes.to_vec())?,
+            volume: volumes[0],
+            beside: volumes[1..].to_vec(),
             transfer,
             extent_pixels,
         })
@@ -96,6 +116,7 @@ impl<'v> Studio<'v> {
         let settings = blended_as_they_are(settings);
         let scene = scene(
             self.volume,
+            &self.beside,
             &self.transfer,
             camera,
             self.extent_pixels,
@@ -113,6 +134,7 @@ impl<'v> Studio<'v> {
         let settings = blended_as_they_are(settings);
         let scene = scene(
             self.volume,
+            &self.beside,
             &self.transfer,
             camera,
             self.extent_pixels,
@@ -131,6 +153,7 @@ fn blended_as_they_are(settings: Settings) -> Settings {
 
 fn scene<'a>(
     volume: &'a Volume,
+    beside: &'a [&'a Volume],
     transfer: &'a TransferFunction,
     camera: &'a Camera,
     extent_pixels: [u32; 2],
@@ -139,7 +162,10 @@ fn scene<'a>(
     Scene {
         volume,
         transfer: Some(transfer),
-        beside: Beside::Nothing,
+        beside: match beside {
+            [] => Beside::Nothing,
+            _ => Beside::Classified(beside),
+        },
         camera,
         extent_pixels,
         settings,

@@ -3,9 +3,9 @@
 //! A host's pipelines go with their owners, since its device must be given back clean; so do those that were made for a render
 //! pass of a host's, whose handle may come again for another.
 
+use super::{Blend, DepthUse, Error, Gpu, TargetClass, owned::Own};
 #[cfg(feature = "conformance")]
-use super::recorder;
-use super::{Blend, DepthUse, Error, Gpu, TargetClass, owned::Own, pipeline::words};
+use super::{pipeline::words, recorder};
 use crate::shaders::Shader;
 use ash::vk;
 use std::collections::HashMap;
