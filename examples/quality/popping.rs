@@ -101,8 +101,8 @@ pub fn print() -> Result<(), Box<dyn Error>> {
     print_splats(&scenes)
 }
 
-/// Sheets along an axis switch as stacks do. Sheets that face the eye turn with it: what is printed of them is by how much the
-/// change over .2 degrees across 45 is larger than that beside it.
+/// Sheets along an axis switch as stacks do. Sheets that face the eye turn with it: what is printed of them is by how much
+/// the change over .2 degrees across 45 is larger than that beside it.
 fn print_splats(scenes: &[Scene]) -> Result<(), Box<dyn Error>> {
     println!("\n### Popping of splats: J, and K\n");
     println!(
@@ -118,21 +118,12 @@ fn print_splats(scenes: &[Scene]) -> Result<(), Box<dyn Error>> {
         ];
         print!("| {} |", scene.name);
         for studio in &mut studios {
-            let axis = splats(Sheets::Axis);
-            let of_stack = |stack| Settings {
-                stack: Some(stack),
-                ..axis.clone()
-            };
-            let a = studio.picture(&camera(45.0), of_stack(0))?;
-            let b = studio.picture(&camera(45.0), of_stack(1))?;
-            print!(" {:.3} |", jump(&a, &b));
-            let mut turned = |from: f64| -> Result<f64, Box<dyn Error>> {
-                let settings = splats(Sheets::Image);
-                let a = studio.picture(&camera(from), settings.clone())?;
-                Ok(jump(&a, &studio.picture(&camera(from + 0.2), settings)?))
-            };
-            let beside = 0.5 * (turned(44.7)? + turned(45.1)?);
-            print!(" {:.3} |", turned(44.9)? - beside);
+            for jump in splat_jumps(studio)? {
+                match jump.is_nan() {
+                    true => print!(" nothing is seen |"),
+                    false => print!(" {jump:.3} |"),
+                }
+            }
         }
         let reference = film(&mut studios[0], &reference())?;
         for studio in &mut studios {
@@ -144,6 +135,23 @@ fn print_splats(scenes: &[Scene]) -> Result<(), Box<dyn Error>> {
         println!();
     }
     Ok(())
+}
+
+/// J of sheets along an axis, and what sheets that face the eye have of it beyond their neighbours.
+pub fn splat_jumps(studio: &mut Studio) -> Result<[f64; 2], Box<dyn Error>> {
+    let of_stack = |stack| Settings {
+        stack: Some(stack),
+        ..splats(Sheets::Axis)
+    };
+    let a = studio.picture(&camera(45.0), of_stack(0))?;
+    let b = studio.picture(&camera(45.0), of_stack(1))?;
+    let mut turned = |from: f64| -> Result<f64, Box<dyn Error>> {
+        let a = studio.picture(&camera(from), splats(Sheets::Image))?;
+        let b = studio.picture(&camera(from + 0.2), splats(Sheets::Image))?;
+        Ok(jump(&a, &b))
+    };
+    let beside = 0.5 * (turned(44.7)? + turned(45.1)?);
+    Ok([jump(&a, &b), turned(44.9)? - beside])
 }
 
 fn splats(sheets: Sheets) -> Settings {

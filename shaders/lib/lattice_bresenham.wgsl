@@ -1,5 +1,5 @@
-// Samples where a ray meets the heights (j + 1/2) / D of its own main axis k, that of its largest slope in voxel space, D samples
-// a voxel of that axis. With s = sign(d_k) they count from front to back:
+// Samples where a ray meets the heights (j + 1/2) / D of its own main axis k, that of its largest slope in voxel space, D
+// samples a voxel of that axis. With s = sign(d_k) they count from front to back:
 //
 //     t_i = ((i + 1/2) / D - s o_k) / |d_k|          a sample stands for 1 / (D |d_k|)
 //

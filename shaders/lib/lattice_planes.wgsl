@@ -1,4 +1,5 @@
-// Samples where the ray meets the planes that a view-aligned slicer draws, or the slices of a base plane. CPU reference: src/lattice.rs.
+// Samples where the ray meets the planes that a view-aligned slicer draws, or the slices of a base plane. CPU reference:
+// src/lattice.rs.
 
 #import ray
 #import lattice

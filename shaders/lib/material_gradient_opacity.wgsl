@@ -1,6 +1,6 @@
 // What a sample is made of where its opacity is weighed by how steep it is there, by central differences, and light
-// falls on it unhindered: of what material_scalar_gradient.wgsl can do, what is wanted most of the time. CPU reference: that of
-// material_scalar_gradient.wgsl.
+// falls on it unhindered: of what material_scalar_gradient.wgsl can do, what is wanted most of the time. CPU reference: that
+// of material_scalar_gradient.wgsl.
 
 #import transfer_{transfer}
 #import gradient_central

@@ -10,6 +10,8 @@ mod studio;
 #[path = "../../examples/quality/wood_grain.rs"]
 mod wood_grain;
 
+use stratavox::picture::ColorSpace;
+use stratavox::technique::preclassified::preclassified;
 use studio::Studio;
 
 /// The most K that the target allows.
@@ -42,6 +44,28 @@ fn where_smooth_stacks_switch_the_frame_changes_as_its_neighbours_do() {
         asserted += 1;
     }
     assert_eq!(asserted, 3, "two scenes of shells, and rings");
+}
+
+/// What sheets that face the eye may jump, in per cent: of values, and of voxels that are classified.
+const MOST_OF_IMAGE_SHEETS: [f64; 2] = [0.5, 0.1];
+
+#[test]
+fn splats_in_sheets_that_face_the_eye_do_not_pop_where_those_along_an_axis_do() {
+    let mut scenes = popping::scenes().unwrap().into_iter();
+    let is_asserted = |scene: &popping::Scene| scene.name == "off-centre ellipse shell";
+    let scene = scenes.find(is_asserted).expect("a scene of the table");
+    let (volume, transfer) = (&scene.volume, &scene.transfer);
+    let classified = preclassified(volume, transfer, 1.0, ColorSpace::Display).unwrap();
+    let studios = [
+        Studio::new(volume, transfer.clone(), popping::EXTENT).unwrap(),
+        Studio::of_classified(&classified, transfer.clone(), popping::EXTENT).unwrap(),
+    ];
+    for (mut studio, most) in studios.into_iter().zip(MOST_OF_IMAGE_SHEETS) {
+        let [axis, image] = popping::splat_jumps(&mut studio).unwrap();
+        println!("J of axis sheets {axis:.3} %, of image sheets {image:.3} %");
+        assert!(image <= most, "{image} %");
+        assert!(image <= axis / 5.0, "{image} % for {axis} %");
+    }
 }
 
 #[test]
