@@ -139,6 +139,7 @@ pub(super) fn write(
 }
 
 /// Whether a file of bricks of such a volume has coarser levels.
+#[cfg(feature = "cli")]
 pub(crate) fn has_coarser_levels(dims: [u32; 3]) -> bool {
     level_dims(dims).len() > 1
 }

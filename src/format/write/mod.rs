@@ -19,6 +19,7 @@ mod slabs;
 mod unpacked;
 
 use crate::volume::{Header, ReadError, Source, VoxelBox, VoxelType};
+#[cfg(feature = "cli")]
 pub(crate) use bricks::has_coarser_levels;
 use layout::Layout;
 pub use rows::DoneBricks;
