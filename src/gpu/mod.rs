@@ -263,8 +263,8 @@ impl Gpu {
         unsafe { self.store().retire(&self.device, completed) };
     }
 
-    /// How many raw objects of each kind exist: those with an owner and those that wait to be destroyed. Pipelines of a device
-    /// of our own belong to that, and are not counted.
+    /// How many raw objects of each kind exist: those with an owner and those that wait to be destroyed. Pipelines of a
+    /// device of our own belong to it, and are not counted.
     pub fn live_objects(&self) -> BTreeMap<&'static str, usize> {
         self.store().live()
     }

@@ -48,7 +48,8 @@ impl SharedDevice {
     }
 
     /// What the `user`th of its users, from 0, works with: a queue, which it has for itself where there are as many as
-    /// users, and memory and a command buffer of its own. Pipelines are shared. The device lives until the last of these is gone.
+    /// users, and memory and a command buffer of its own. Pipelines are shared. The device lives until the last of these
+    /// is gone.
     ///
     /// # Errors
     /// As [`Headless::new`].

@@ -74,7 +74,7 @@ fn piped(line: &str, folder: &Folder) -> String {
     String::from_utf8_lossy(&ran.stdout).into_owned()
 }
 
-/// The same with pictures that take a hundredth of the time.
+/// The same with small pictures.
 fn small(line: &str) -> String {
     let draws = ["stratavox render ", "stratavox animate "];
     if !draws.iter().any(|verb| line.starts_with(verb)) {

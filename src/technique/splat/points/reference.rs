@@ -71,7 +71,7 @@ pub(crate) fn pixel<R: Real>(
 }
 
 /// How far from a point's centre a ray passes, in its standard deviations, squared; `None` where that is behind the eye.
-fn square_of<R: Real>(point: &ViewPoint, ray: &Ray<R>) -> Option<R> {
+pub(super) fn square_of<R: Real>(point: &ViewPoint, ray: &Ray<R>) -> Option<R> {
     let center: [R; 3] = vector(point.center);
     let from_eye: [R; 3] = std::array::from_fn(|k| center[k] - ray.origin[k]);
     let t = dot(from_eye, ray.direction);

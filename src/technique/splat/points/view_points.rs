@@ -14,8 +14,9 @@ use glam::{DVec2, DVec3, dvec2};
 
 /// Pixels along the side of a tile.
 pub(super) const TILE_PIXELS: u32 = 8;
-/// Rounding: rays in f32 are off by a hundredth of a pixel at most in a picture of 16384.
-const MARGIN_PIXELS: f64 = 1.0 / 16.0;
+/// By how much of the lengths in it a ray of the shader passes a point elsewhere: half an ulp of its origin and of the centre,
+/// and of their difference; three of the direction's norm, and two of products.
+const ROUNDING: f64 = 8.0 * f32::EPSILON as f64;
 
 /// A point as the shader reads it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -190,17 +191,18 @@ impl Seen {
         (depth > 0.0).then_some(())?;
         let at_depth = if eye.is_perspective { depth } else { 1.0 };
         let std = std.max(eye.low_pass * eye.pixel.max_element() * at_depth);
+        let lengths = from_eye.length() + world.length() + eye.origin.length();
+        let radius = reach * std + ROUNDING * lengths;
         let of_axis = |axis: usize| {
             let lateral = from_eye.dot(eye.across[axis]);
             let ends = match eye.is_perspective {
-                true => tangents(lateral, depth, reach * std),
-                false => [lateral - reach * std, lateral + reach * std],
+                true => tangents(lateral, depth, radius),
+                false => [lateral - radius, lateral + radius],
             };
             let pixels = ends.map(|end| (end - eye.corner[axis]) / eye.pixel[axis]);
             let tile = f64::from(TILE_PIXELS);
             let most = f64::from(eye.tiles[axis]);
-            let first = ((pixels[0] - MARGIN_PIXELS) / tile).floor();
-            let end = ((pixels[1] + MARGIN_PIXELS) / tile).ceil();
+            let (first, end) = ((pixels[0] / tile).floor(), (pixels[1] / tile).ceil());
             let tiles = [first, end].map(|n| n.clamp(0.0, most) as u32);
             (tiles[0] < tiles[1]).then_some(tiles)
         };
@@ -259,3 +261,89 @@ fn lists(seen: &[Seen], [across, down]: [u32; 2]) -> Result<[Vec<u32>; 2], Error
 
 /// A gibibyte of lists.
 const MOST_LISTED: u64 = 1 << 28;
+
+#[cfg(test)]
+mod tests {
+    use super::super::reference::square_of;
+    use super::*;
+    use crate::camera::{Camera, Projection};
+    use crate::ray::pixel_ray;
+    use crate::shaders::Frame;
+    use crate::technique::splat::{Splat, kernel::reach_of};
+    use crate::technique::{InPixel, Settings};
+    use crate::volume::Grid;
+    use glam::{DAffine3, dvec3};
+
+    const EXTENT: [u32; 2] = [61, 53];
+
+    /// As the shader finds it, whose rays from far away are off by pixels.
+    #[test]
+    fn what_a_ray_passes_is_listed_however_far_the_eye() {
+        let mut state = 7_u32;
+        let mut unit = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(state >> 8) / 16_777_216.0
+        };
+        let count = 300;
+        let places = (0..count).map(|_| 10.0 * dvec3(unit(), unit(), unit()));
+        let places: Vec<_> = places.collect();
+        let stds = vec![0.01; count];
+        let points = Points::new(places, vec![1.0; count], Some(stds), None).expect("points");
+        let grid = Grid {
+            dims: [10; 3],
+            world_from_voxel: DAffine3::IDENTITY,
+        };
+        let settings = Settings {
+            splat: Splat::of_points(),
+            ..Settings::default()
+        };
+        let reach = reach_of(&settings.splat);
+        let mut met = 0;
+        for distance in [3.0, 30.0, 1e4, 1e6, 1e7_f64] {
+            let degrees = 2.0 * (5.0 / distance).atan().to_degrees();
+            for projection in [
+                Projection::Perspective {
+                    fov_degrees: degrees,
+                },
+                Projection::Orthographic { view_height: 11.0 },
+            ] {
+                let camera = Camera {
+                    eye: dvec3(5.0, 5.0, 5.0) + distance * dvec3(0.6, -0.64, 0.48),
+                    target: dvec3(5.0, 5.0, 5.0),
+                    up: DVec3::Z,
+                    projection,
+                    zoom: 1.0,
+                };
+                let view = View {
+                    grid: &grid,
+                    camera: &camera,
+                    extent_pixels: EXTENT,
+                    in_pixel: InPixel::CENTER,
+                    settings: &settings,
+                };
+                let seen = ViewPoints::new(&view, &points).expect("lists");
+                let rays = view.rays();
+                let numbers = |v: DVec3| v.as_vec3().to_array();
+                let mut frame: Frame = bytemuck::Zeroable::zeroed();
+                frame.origin = numbers(rays.origin);
+                frame.origin_dx = numbers(rays.origin_dx);
+                frame.origin_dy = numbers(rays.origin_dy);
+                frame.direction = numbers(rays.direction);
+                frame.direction_dx = numbers(rays.direction_dx);
+                frame.direction_dy = numbers(rays.direction_dy);
+                for [x, y] in (0..EXTENT[1]).flat_map(|y| (0..EXTENT[0]).map(move |x| [x, y])) {
+                    let ray = pixel_ray(&frame, [x as f32 + 0.5, y as f32 + 0.5]);
+                    let is_met = |point: &ViewPoint| {
+                        square_of(point, &ray).is_some_and(|b| f64::from(b) <= reach * reach)
+                    };
+                    let all = seen.points.iter().filter(|point| is_met(point)).count();
+                    let listed = seen.of_pixel([x, y], EXTENT[0]);
+                    let listed = listed.filter(|point| is_met(point)).count();
+                    assert_eq!(listed, all, "{projection:?} from {distance}: {x}, {y}");
+                    met += all;
+                }
+            }
+        }
+        assert!(met > 10_000, "hardly anything was met: {met}");
+    }
+}
