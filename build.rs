@@ -465,7 +465,7 @@ fn rust_struct(module: &naga::Module, handle: naga::Handle<naga::Type>) -> (Stri
         "/// Uniform `{name}` of the shaders, byte for byte.\n#[repr(C)]\n\
          #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]\npub struct {name} {{\n{fields}}}\n\
          /// The fields of [`{name}`]: filled by name, none can be forgotten.\n\
-         #[derive(Clone, Copy, Debug, PartialEq)]\npub struct {name}Fields {{\n{public}}}\n\
+         #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Zeroable)]\npub struct {name}Fields {{\n{public}}}\n\
          impl From<{name}Fields> for {name} {{\n    fn from(fields: {name}Fields) -> Self {{\n        Self {{\n{copies}{padding}        }}\n    }}\n}}\n\
          const _: () = {{\n{asserts}    assert!(std::mem::size_of::<{name}>() == {span});\n}};"
     );

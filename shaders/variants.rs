@@ -41,7 +41,7 @@ impl Slot {
 /// llvmpipe (`opaque_predicates.rs`).
 pub const CONSTANTS: &[&str] = &[
     "software", "filter", "holes", "lattice", "cuts", "transfer", "end", "mode", "kernel",
-    "operator", "blend", "output", "topology", "layers", "sheets", "take",
+    "operator", "blend", "output", "topology", "layers", "sheets", "take", "grids",
 ];
 
 /// The name of an import with its slots filled. `{slot=word}` has that word where an entry has no such slot.
@@ -107,6 +107,7 @@ pub const SILENT: &[&str] = &[
     "cut",
     "triangles",
     "layers",
+    "shared",
 ];
 /// Who reads the parameters of slices: the fragments, or the vertices for them (`flat_varyings.rs`).
 const PARAMETERS: Slot = slot("parameters", &["uniform", "planes", "stack"]);
@@ -134,6 +135,8 @@ const SCALAR: Slot = slot("inputs", &["scalar"]);
 /// Steps that adapt to what is there, of volumes without holes.
 const ADAPTIVE: Slot = slot("inputs", &["adaptive"]);
 const WHOLE: Slot = slot("holes", &["none"]);
+/// Whether volumes that are mixed lie on the grid of the first, or on grids of their own.
+const GRIDS: Slot = constant("grids", &["shared", "own"]);
 const MIXED: Slot = slot("inputs", &["channels", "colors"]);
 const MODE: Slot = slot("mode", &["composite"]);
 /// Modes that slicers do not have leave the lattice of slicers to them.
@@ -187,7 +190,9 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     (
         "raycast",
-        &[LINE, MODE, MIXED, LATTICE, NARROW, HOLES, TABLE, LAYERS],
+        &[
+            LINE, MODE, MIXED, LATTICE, NARROW, HOLES, TABLE, GRIDS, LAYERS,
+        ],
     ),
     (
         "raycast",
@@ -199,6 +204,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
             NARROW_FETCHED,
             HOLES,
             POINTS,
+            GRIDS,
             LAYERS,
         ],
     ),
@@ -224,7 +230,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     (
         "isosurface",
-        &[slot("color_by", &["volume"]), NARROW, HOLES, TAPS],
+        &[slot("color_by", &["volume"]), NARROW, HOLES, GRIDS, TAPS],
     ),
     (
         "projection_cells",
@@ -264,7 +270,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     (
         "slices_3d",
-        &[TESTED, BLEND, MIXED, NARROW, HOLES, TRANSFER],
+        &[TESTED, BLEND, MIXED, NARROW, HOLES, TRANSFER, GRIDS],
     ),
     (
         "slices_3d",

@@ -14,7 +14,7 @@ use crate::volume::Volume;
 /// One of several things seen in the same place.
 #[derive(Clone, Copy, Debug)]
 pub struct Channel<'a> {
-    /// On the grid of the scene's volume.
+    /// On the grid of the scene's volume, or on one of its own: what of it lies in the box of the scene's volume is seen.
     pub volume: &'a Volume,
     /// As [`Scene::transfer`].
     pub transfer: Option<&'a TransferFunction>,
@@ -148,6 +148,7 @@ impl<'a> Scene<'a> {
         let volumes = self.volumes();
         let (wanted, limit) = (volumes.len(), MAX_CHANNELS as usize);
         let grid = self.volume.grid();
+        let has_own_grids = volumes.iter().any(|volume| volume.grid() != grid);
         let roles = self.roles();
         // What a voxel is called, and what makes it opaque, are no numbers that can be projected.
         let only_composite = |role: &Role| matches!(role, Role::Labels | Role::Opacity);
@@ -203,7 +204,7 @@ impl<'a> Scene<'a> {
             _ if filter.kernel().is_some() && !mode.is_projection() => {
                 Err(Error::FilterAlone { filter })
             }
-            _ if volumes.iter().any(|volume| volume.grid() != grid) => Err(Error::OtherGrid),
+            SampleInputs::Colors if has_own_grids => Err(Error::OtherGrid),
             SampleInputs::Colors if matches!(self.beside, Beside::Classified(_)) && wanted != 4 => {
                 Err(Error::NoColor { found: wanted })
             }
@@ -219,6 +220,7 @@ impl<'a> Scene<'a> {
                 Err(Error::OpacityOfNothing)
             }
             _ if wanted > limit => Err(Error::TooManyChannels { wanted, limit }),
+            _ if has_own_grids => self.settings.check_own_grids(),
             _ => Ok(()),
         }
     }
@@ -233,9 +235,6 @@ impl<'a> Scene<'a> {
                 }
                 if self.settings.wants_light_volume() {
                     return Err(Error::NotOccludedTogether);
-                }
-                if one.volume.grid() != self.volume.grid() {
-                    return Err(Error::OtherGrid);
                 }
                 match one.transfer {
                     None => Err(Error::NoTransferFunction),

@@ -64,6 +64,8 @@ pub enum Seen {
     Denoised,
     /// Two volumes, each with a function.
     Channels,
+    /// Two, of which one lies on a grid of its own.
+    OwnGrids,
     /// One under a label map.
     Labelled,
     /// Three volumes that are one colour.
@@ -261,6 +263,12 @@ pub const FEATURES: &[Feature] = &[
     ),
     feature("several channels", "`--channel`", Seen::Channels, |_| {}),
     feature(
+        "volumes on grids of their own",
+        "`--with`",
+        Seen::OwnGrids,
+        |_| {},
+    ),
+    feature(
         "labels over it, one of them dimmed",
         "`--labels`, `--label-dim`",
         Seen::Labelled,
@@ -344,6 +352,7 @@ pub struct Matter {
     bowl: Volume,
     denoised: Volume,
     others: [Volume; 2],
+    elsewhere: Volume,
     classified: [Volume; 4],
     labels: Volume,
     function: TransferFunction,
@@ -396,6 +405,7 @@ impl Matter {
             numbers,
             holed,
             classified: classified.expect("volumes of the right length"),
+            elsewhere: volume_elsewhere(),
             others: [volume(wave(0.5, 1.1)), volume(wave(1.2, 0.4))],
             labels: map,
             function: function(),
@@ -429,6 +439,7 @@ impl Matter {
         };
         match seen {
             Seen::Channels => vec![channel(&self.others[0], &self.function, Role::Numbers)],
+            Seen::OwnGrids => vec![channel(&self.elsewhere, &self.function, Role::Numbers)],
             Seen::Veiled => vec![channel(&self.others[0], &self.function, Role::Opacity)],
             Seen::Labelled => vec![channel(&self.labels, &self.label_function, Role::Labels)],
             _ => Vec::new(),
@@ -446,7 +457,9 @@ impl Matter {
         parts: &'a [&'a Volume],
     ) -> Scene<'a> {
         let beside = match seen {
-            Seen::Channels | Seen::Labelled | Seen::Veiled => Beside::Channels(channels),
+            Seen::Channels | Seen::OwnGrids | Seen::Labelled | Seen::Veiled => {
+                Beside::Channels(channels)
+            }
             Seen::Colored => Beside::Colors(parts),
             Seen::Classified => Beside::Classified(parts),
             Seen::Alone
@@ -491,6 +504,19 @@ fn volume(field: impl Fn(DVec3) -> f64) -> Volume {
     let value = |p: [u32; 3]| field(DVec3::from_array(p.map(f64::from)) + 0.5) as f32;
     let voxels = Voxels::F32(all.map(value).collect());
     Volume::from_voxels(DIMS, world_from_voxel(), voxels, Rescale::default(), None)
+        .expect("a volume of the right length")
+}
+
+/// Turned against the grid of the others, with finer voxels, in most of their box.
+fn volume_elsewhere() -> Volume {
+    let m = DMat3::from_rotation_z(0.3) * DMat3::from_diagonal(dvec3(0.8, 0.7, 1.2));
+    let dims = [13, 14, 10];
+    let half = m * (0.5 * DVec3::from_array(dims.map(f64::from)));
+    let count = dims.iter().product::<u32>();
+    let values = (0..count).map(|i| 0.2 + 0.6 * ((i * 37 % 101) as f32 / 100.0));
+    let affine = DAffine3::from_mat3_translation(m, center() - half);
+    let voxels = Voxels::F32(values.collect());
+    Volume::from_voxels(dims, affine, voxels, Rescale::default(), None)
         .expect("a volume of the right length")
 }
 

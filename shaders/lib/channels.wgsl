@@ -1,6 +1,7 @@
-// Several volumes on one grid, the same bricks cut out of each: the volume is channel 0.
+// Several volumes in one place: the volume is channel 0.
 
 #import channels_{holes}
+#import channels_on_{grids=shared}
 
 @group(0) @binding(8) var channel_1: Values;
 @group(0) @binding(9) var channel_2: Values;
@@ -15,24 +16,12 @@ fn channel_value(channel: u32, place: Place) -> f32 {
     }
 }
 
-fn value_in(values: Values, channel: u32, place: Place) -> f32 {
-    let coding = Coding(
+fn channel_coding(channel: u32) -> Coding {
+    return Coding(
         frame.channel_code_scale[channel],
         frame.channel_code_offset[channel],
         frame.channel_slope[channel],
         frame.channel_intercept[channel],
         frame.channel_codes_are_integers[channel],
     );
-    // Nothing lies between two labels.
-    if frame.channel_is_labels[channel] != 0u {
-        return nearest(values, coding, place);
-    }
-    return filtered(values, coding, place);
-}
-
-fn channel_footprint(channel: u32, place: Place) -> Footprint {
-    if frame.channel_is_labels[channel] != 0u {
-        return nearest_footprint(place);
-    }
-    return footprint_of(place);
 }

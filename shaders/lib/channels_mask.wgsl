@@ -10,6 +10,9 @@ const DIMMED: u32 = 2u;
 @group(0) @binding(13) var validity_3: Mask;
 
 fn channel_has_data(channel: u32, place: Place) -> bool {
+    if !is_in_channel(channel, place) {
+        return false;
+    }
     if frame.channel_has_holes[channel] == 0u {
         return true;
     }
@@ -22,12 +25,12 @@ fn channel_has_data(channel: u32, place: Place) -> bool {
     }
 }
 
-// Labels lie in a channel after the first.
+// Labels lie in a channel after the first, where they have data.
 fn channel_is_dimmed(channel: u32, place: Place) -> bool {
     if frame.channel_has_holes[channel] == 0u {
         return false;
     }
-    let footprint = nearest_footprint(place);
+    let footprint = channel_footprint(channel, place);
     switch channel {
         case 0u: { return false; }
         case 1u: { return mark_of(validity_1, footprint) == DIMMED; }

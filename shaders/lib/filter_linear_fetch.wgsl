@@ -4,8 +4,10 @@
 #import footprint_linear
 
 fn filtered(values: Values, coding: Coding, voxel: vec3<f32>) -> f32 {
-    let taps = footprint_of(voxel);
-    let weight = fract(voxel - 0.5);
+    return filtered_between(values, coding, footprint_of(voxel), fract(voxel - 0.5));
+}
+
+fn filtered_between(values: Values, coding: Coding, taps: Footprint, weight: vec3<f32>) -> f32 {
     let front = lerp(
         row(values, coding, taps, weight.x, taps.min.y, taps.min.z),
         row(values, coding, taps, weight.x, taps.max.y, taps.min.z),

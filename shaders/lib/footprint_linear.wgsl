@@ -4,9 +4,13 @@
 #import footprint
 
 fn footprint_of(voxel: vec3<f32>) -> Footprint {
+    return linear_footprint(voxel, frame.dims);
+}
+
+fn linear_footprint(voxel: vec3<f32>, dims: vec3<f32>) -> Footprint {
     let lattice = voxel - 0.5;
     let below = floor(lattice);
-    let last = vec3<i32>(frame.dims) - 1;
+    let last = vec3<i32>(dims) - 1;
     let above = select(below, below + 1.0, lattice > below);
     return Footprint(
         clamp(vec3<i32>(below), vec3(0), last),

@@ -8,6 +8,7 @@
 const MAX_CLIP_PLANES: u32 = 512u;
 // One lane of a vector each.
 const MAX_CHANNELS: u32 = 4u;
+const CHANNEL_ROWS: u32 = 12u;
 const MAX_LIGHTS: u32 = 4u;
 const MAX_LEVELS: u32 = 8u;
 
@@ -73,8 +74,11 @@ struct Frame {
     slice_first_after_turn: i32,
     // Nothing lies before this recording.
     is_first_brick: u32,
-    // Several volumes on one grid, one lane a channel; lane 0 of codes is that of the volume above.
+    // Several volumes in one place, one lane a channel; lane 0 of codes is that of the volume above.
     channel_count: u32,
+    // From voxel space to that of each channel, three rows each, and voxels along its axes.
+    channel_from_voxel: array<vec4<f32>, CHANNEL_ROWS>,
+    channel_dims: array<vec4<f32>, MAX_CHANNELS>,
     channel_code_scale: vec4<f32>,
     channel_code_offset: vec4<f32>,
     channel_slope: vec4<f32>,

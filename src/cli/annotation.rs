@@ -2,7 +2,7 @@
 
 use super::{
     Error,
-    flags::{Classification, ScaleWord, SceneFlags},
+    flags::{Classification, ScaleWord, SceneFlags, WithWord},
     load::open,
     look::View,
     renderer::Renderer,
@@ -33,6 +33,21 @@ pub fn annotation(
     let mut facts = Facts::of(header, &name);
     if let Some(word) = scene.modes.paint(mode) {
         facts.paint = Some(paint(scene, word)?);
+    }
+    if !scene.with.with.is_empty() {
+        let own = scene
+            .channels
+            .channel
+            .len()
+            .max(scene.channels.channels.len())
+            .max(1);
+        facts.channels.resize(own, String::new());
+        if own == 1 {
+            facts.channels = vec![name];
+        }
+        facts
+            .channels
+            .extend(scene.with.with.iter().map(WithWord::name));
     }
     Ok(Some(Annotation {
         marks: marks.clone(),

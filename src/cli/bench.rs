@@ -93,7 +93,7 @@ const DEFAULT_INPUT: &str = "phantom:head";
 impl Bench {
     /// Measures, prints, writes.
     pub fn run(mut self, gate: &Gate) -> Result<(), Error> {
-        self.scene.classification.inline_file()?;
+        self.scene.inline_files()?;
         let mut scene = match &self.scene_file {
             Some(path) => scene_file::overlay(scene_file::read(path)?, &self.scene),
             None => self.scene.clone(),

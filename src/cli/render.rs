@@ -280,7 +280,7 @@ impl Render {
 
     /// The flags laid over those of `--scene`.
     fn whole_scene(&mut self) -> Result<SceneFlags, Error> {
-        self.scene.classification.inline_file()?;
+        self.scene.inline_files()?;
         let mut scene = match &self.scene_file {
             Some(path) => scene_file::overlay(scene_file::read(path)?, &self.scene),
             None => self.scene.clone(),

@@ -33,6 +33,7 @@ pub fn read(path: &Path) -> Result<SceneFlags, Error> {
     scene.input = scene.input.found_in(folder_of(path));
     scene.labels = scene.labels.with_paths(|file| folder_of(path).join(file));
     scene.opacity = scene.opacity.with_paths(|file| folder_of(path).join(file));
+    scene.with = scene.with.with_paths(|file| folder_of(path).join(file));
     Ok(scene)
 }
 
@@ -46,6 +47,9 @@ pub fn text(scene: &SceneFlags, path: &Path) -> String {
             .with_paths(|file| relative(file, folder_of(path))),
         opacity: scene
             .opacity
+            .with_paths(|file| relative(file, folder_of(path))),
+        with: scene
+            .with
             .with_paths(|file| relative(file, folder_of(path))),
         ..scene.clone()
     };
@@ -62,6 +66,7 @@ pub fn overlay(mut scene: SceneFlags, flags: &SceneFlags) -> SceneFlags {
     if flags.input.path.is_some() {
         scene.input = Default::default();
         scene.opacity = Default::default();
+        scene.with = Default::default();
     }
     if flags.opacity.are_given() {
         scene.opacity = Default::default();
@@ -138,7 +143,11 @@ pub fn inputs(scene: &SceneFlags, scene_file: Option<&Path>) -> Vec<PathBuf> {
         scene.opacity.file(),
         scene_file,
     ];
-    files.into_iter().flatten().map(Path::to_owned).collect()
+    let files = files.into_iter().flatten();
+    files
+        .chain(scene.with.files())
+        .map(Path::to_owned)
+        .collect()
 }
 
 #[cfg(test)]
@@ -164,7 +173,7 @@ mod tests {
         --target 1,2,3 --up 0,0,1 --view-height 77 --exaggerate 3 --size 64x48 --background 0,0.1,1 --aov value,depth --bit-depth 16 \
         --device cpu --component 1 --raw 2x2x2,u8 --variable T --channel 0,color=red,window=0:3 --channel 2 \
         --lmip-threshold 5 --mida-gamma -0.5 --attenuation 3 --depth-cue 0.4 --exact-maximum --iso -3,4.5 \
-        --iso-color red,0:0.5:1 --iso-opacity 0.3,1 --labels l.nrrd --opacity-variable q --opacity-component 2 --opacity-from o.nrrd --opacity-window -1,2 --label-tf l.txt --label-show 1,3-5";
+        --iso-color red,0:0.5:1 --iso-opacity 0.3,1 --labels l.nrrd --opacity-variable q --opacity-component 2 --opacity-from o.nrrd --opacity-window -1,2 --with p,q.nrrd,preset=pet,window=0:5 --with phantom:gauss,n=32,color=red --label-tf l.txt --label-show 1,3-5";
 
     #[test]
     fn a_saved_scene_comes_back_as_it_was() {

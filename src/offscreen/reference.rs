@@ -16,6 +16,7 @@ use crate::shaders::Frame;
 use crate::technique::composite::Composite;
 use crate::technique::faces::{FACE_LENGTH, cut_face, on_face};
 use crate::technique::mixture::color_of;
+use crate::technique::own_grid::{ChannelGrids, place_in_channel};
 use crate::technique::reference::{Gathered, Samples};
 use crate::technique::shading::shade;
 use crate::technique::splat::ViewPoints;
@@ -133,8 +134,8 @@ struct ReferenceRays<'a, R> {
     roles: Vec<Role>,
     /// What gradients are made of, where that is not values as the filter makes them.
     gradients: Option<&'a Volume>,
-    /// Which voxels of label maps are dimmed.
-    marks: Vec<Volume>,
+    /// Which voxels of label maps are dimmed, by their channels.
+    marks: Vec<(usize, Volume)>,
     /// One a transfer function; none in a projecting mode, which classifies when it resolves.
     classifiers: Vec<Classifier>,
     /// What colours surfaces by another volume.
@@ -194,6 +195,9 @@ impl<'a, R: Real> ReferenceRays<'a, R> {
         let Recording {
             mut frame, slices, ..
         } = view.on_cpu()?;
+        let grids: Vec<_> = scene.volumes().iter().map(|volume| volume.grid()).collect();
+        let ChannelGrids { from_voxel, dims } = ChannelGrids::new(&grids);
+        (frame.channel_from_voxel, frame.channel_dims) = (from_voxel, dims);
         frame.flat_gradient = view.flat_gradient(scene.volume.value_range);
         frame.reference_length = scene.reference_length() as f32;
         Ok(Self {
@@ -272,7 +276,8 @@ impl<'a, R: Real> ReferenceRays<'a, R> {
         let lit = |own: [R; 3], p, ray_direction| {
             let other = self.volumes.get(1).zip(self.paint.as_ref());
             let color = other.and_then(|(volume, points)| {
-                let [r, g, b, _] = classify_by_points(points, filtered(volume, filter, p)?);
+                let own = place_in_channel(frame, 1, p)?;
+                let [r, g, b, _] = classify_by_points(points, filtered(volume, filter, own)?);
                 Some([r, g, b])
             });
             let color = color.unwrap_or(own);

@@ -16,7 +16,7 @@ const STAGING_BYTES: u64 = 4 << 20;
 /// A value that is neither filtered nor classified is the less part of a look.
 const LOOKS_OF_A_VALUE: f64 = 0.1;
 
-/// Makes and fills the textures of volumes on one grid: their voxels, or the coefficients of their splines.
+/// Makes and fills the textures of volumes: their voxels, or the coefficients of their splines.
 pub fn upload(
     device: &mut Headless,
     volumes: &[&Volume],
@@ -24,7 +24,7 @@ pub fn upload(
     spline: Option<Spline>,
 ) -> Result<Vec<GpuVolume>, Error> {
     let Some(spline) = spline else {
-        let made = GpuVolume::several(device.gpu(), volumes, layout)?;
+        let made = together(device, volumes, layout)?;
         for (made, volume) in made.iter().zip(volumes) {
             fill(device, made, volume)?;
         }
@@ -38,6 +38,20 @@ pub fn upload(
         Ok(made)
     };
     volumes.iter().map(of_spline).collect()
+}
+
+/// Those on the grid of the first are cut into the same bricks as it is.
+fn together(
+    device: &Headless,
+    volumes: &[&Volume],
+    layout: TextureLayout,
+) -> Result<Vec<GpuVolume>, Error> {
+    let is_shared = |volume: &Volume| volume.grid() == volumes[0].grid();
+    if volumes.iter().all(|volume| is_shared(volume)) {
+        return GpuVolume::several(device.gpu(), volumes, layout);
+    }
+    let each = |volume: &&Volume| GpuVolume::new(device.gpu(), volume, layout);
+    volumes.iter().map(each).collect()
 }
 
 /// The same of one volume, and what its gradients are made of beside it.

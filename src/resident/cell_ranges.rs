@@ -68,7 +68,7 @@ pub(super) fn ranges(part: &VoxelPart, grid: &CellGrid, cells: CellBox) -> Vec<[
 }
 
 /// The values that filters may make of codes between two ends.
-fn range_of(ends: [f32; 2], grid: &CellGrid) -> [f32; 2] {
+pub(super) fn range_of(ends: [f32; 2], grid: &CellGrid) -> [f32; 2] {
     let [a, b] = ends.map(|code| code * grid.slope + grid.intercept);
     let error = SamplerError {
         slack: grid.slack,

@@ -8,6 +8,7 @@
 //! Techniques leave out what lies in cells that cannot matter; the picture stays the same to the bit.
 
 use super::cell_ranges::{CellBox, SamplerError, ranges};
+use super::channel_cells::ranges_of_channel;
 use super::{GpuVolume, TextureLayout};
 use crate::gpu::{
     Bindings, Buffer, ComputePipeline, Error, Gpu, Memory, ParameterRing, Resource, Use,
@@ -154,6 +155,27 @@ impl MacroCells {
             };
             let ranges = ranges(&part, grid, CellBox::whole(grid));
             let offset = 8 * u64::from(grid.first);
+            made.ranges.write(offset, bytemuck::cast_slice(&ranges))?;
+        }
+        Ok(made)
+    }
+
+    /// The ranges of `channel`, made of `voxels` on a grid of its own, in the cells of `volume`; complete at once.
+    ///
+    /// # Errors
+    /// As [`MacroCells::new`].
+    pub fn of_channel(
+        gpu: &Arc<Gpu>,
+        volume: &GpuVolume,
+        channel: &GpuVolume,
+        halo: Halo,
+        voxels: &Volume,
+    ) -> Result<Self, Error> {
+        let made = Self::empty(gpu, volume, halo, Memory::Upload)?;
+        let coding = grid_of(channel, channel.held, channel.held, halo, 0);
+        for cells in &made.grids {
+            let ranges = ranges_of_channel(voxels, &coding, volume.grid(), cells);
+            let offset = 8 * u64::from(cells.first);
             made.ranges.write(offset, bytemuck::cast_slice(&ranges))?;
         }
         Ok(made)

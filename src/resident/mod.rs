@@ -8,6 +8,7 @@ mod bricks;
 mod cell_ranges;
 mod changed_cells;
 mod changed_footprints;
+mod channel_cells;
 mod empty_space;
 mod footprint_texels;
 mod gradients;

@@ -150,7 +150,7 @@ impl Settings {
     }
 }
 
-fn refuse(
+pub(super) fn refuse(
     is_refused: bool,
     wanted: &'static str,
     of: &'static str,

@@ -79,9 +79,14 @@ pub enum Error {
         /// What bricks hold.
         limit: f64,
     },
-    /// Volumes that are mixed lie on one grid.
+    /// The numbers of a colour lie on one grid.
     #[error("the volumes to be mixed lie on different grids, or in different bricks")]
     OtherGrid,
+    /// Volumes on grids of their own are mixed where each lies in one texture.
+    #[error(
+        "volumes on grids of their own are to be mixed, and one of them is too large for one texture of this device"
+    )]
+    OwnGridsInBricks,
     /// Interpolating splines read coefficients, all others the voxels.
     #[error("the filter {filter} reads {}, and the volume on the device holds {}", held(.filter.spline()), held(*.found))]
     WrongCoefficients {

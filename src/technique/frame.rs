@@ -14,7 +14,7 @@ use crate::camera::{Camera, Rays};
 use crate::picture::ColorSpace;
 use crate::resident::{Cell, Coding, TransferLayout, front_to_back, front_to_back_by_rows};
 use crate::shaders::{
-    FrameFields, KERNEL_CATMULL_ROM, KERNEL_CUBIC, KERNEL_QUADRATIC, MAX_CLIP_PLANES, MAX_LIGHTS,
+    FrameFields, KERNEL_CATMULL_ROM, KERNEL_CUBIC, KERNEL_QUADRATIC, MAX_CLIP_PLANES,
 };
 use crate::technique::Error;
 use crate::transfer::Interpolation;
@@ -138,42 +138,15 @@ impl View<'_> {
             first_widget_entry: transfer.first_widget_entry,
             interpolation_is_step: (transfer.interpolation == Interpolation::Step).into(),
             color_space_is_display: (self.settings.color_space == ColorSpace::Display).into(),
-            brick_min: [0.0; 3],
-            brick_max: [0.0; 3],
-            brick_origin: [0.0; 3],
             brick_dims: self.grid.dims.map(|n| n as f32),
             is_first_brick: 1,
             is_only_brick: 1,
             extent_pixels,
-            slice_first: 0,
             slice_direction: 1,
-            slice_turn: 0,
-            slice_first_after_turn: 0,
-            slice_axis: 0,
-            channel_count: 0,
-            channel_code_scale: [0.0; 4],
-            channel_code_offset: [0.0; 4],
-            channel_slope: [0.0; 4],
-            channel_intercept: [0.0; 4],
-            channel_codes_are_integers: [0; 4],
-            channel_is_labels: [0; 4],
-            channel_has_holes: [0; 4],
-            channel_is_opacity: [0; 4],
-            colors_are_classified: 0,
-            channel_table_first: [0.0; 4],
-            channel_table_scale: [0.0; 4],
-            channel_table_count: [0; 4],
-            channel_table_row: [0; 4],
-            channel_point_first: [0; 4],
-            channel_color_point_count: [0; 4],
-            channel_opacity_point_count: [0; 4],
-            channel_interpolation_is_step: [0; 4],
-            channel_reference_length: [0.0; 4],
             slab_first: transfer.slab_first,
             slab_scale: transfer.slab_scale,
             slab_count: transfer.slab_count,
             planes_per_slice: 1.0,
-            cover_offset: 0.0,
             cover_eye_reach: reach.eye,
             is_jittered: patterns.is_jittered,
             jitter: patterns.jitter,
@@ -195,15 +168,6 @@ impl View<'_> {
             level_count: of_mode.level_count,
             level_values: of_mode.level_values,
             level_colors: of_mode.level_colors,
-            light_directions: [[0.0; 4]; MAX_LIGHTS as usize],
-            light_colors: [[0.0; 4]; MAX_LIGHTS as usize],
-            light_count: 0,
-            flat_gradient: 0.0,
-            ambient: 0.0,
-            diffuse: 0.0,
-            specular: 0.0,
-            shininess: 0.0,
-            half_gradient: 0.0,
             smallest_spacing: self.grid.smallest_spacing() as f32,
             samples_per_voxel: self.settings.samples_per_voxel as f32,
             gradient_operator: self.settings.gradient_operator().number(),
@@ -214,17 +178,6 @@ impl View<'_> {
             cut_low: of_faces.cut_low,
             cut_scale: of_faces.cut_scale,
             is_last_brick: 1,
-            light_cells: [0.0; 3],
-            occlusion_strength: 0.0,
-            light_cells_per_voxel: [0.0; 3],
-            light_reach: 0.0,
-            has_shadows: 0,
-            shadow_bundle: 0,
-            light_rows: [[0.0; 4]; 2],
-            cells: [0; 3],
-            cells_first: 0,
-            cells_origin: [0.0; 3],
-            slice_count: 0,
             patch_pixels: self.patch_pixels(),
             patch_reach_voxels: self.patch_reach_voxels() as f32,
             patch_reach_planes: if self.settings.preintegrated {
@@ -232,13 +185,9 @@ impl View<'_> {
             } else {
                 0.0
             },
-            has_host_depth: 0,
             host_near: 0.5,
-            flips_host_depth: 0,
             plane_offset: base.map_or(0.0, |base| base.offset_world as f32),
             base_from_pixel: base.map_or([[0.0; 4]; 3], |base| rows_of(base.base_from_pixel)),
-            host_z: [0.0; 4],
-            host_w: [0.0; 4],
             splat_diagonal: of_splats.splat_diagonal,
             splat_reach: of_splats.splat_reach,
             splat_mixed: of_splats.splat_mixed,
@@ -246,8 +195,8 @@ impl View<'_> {
             splat_first: of_splats.splat_first,
             splat_last: of_splats.splat_last,
             splat_halo: of_splats.splat_halo,
-            points_first: 0,
-            points_end: 0,
+            // What a brick, slices, channels, lights, cells and a host's depth say of themselves, where there are any.
+            ..bytemuck::Zeroable::zeroed()
         };
         self.set_light(&mut fields);
         if let Some(shading) = &self.settings.shading {
@@ -431,7 +380,7 @@ fn rows_of(m: DMat3) -> [[f32; 4]; 3] {
     [0, 1, 2].map(|k| m.row(k).extend(0.0).as_vec4().to_array())
 }
 
-fn affine_rows(affine: &DAffine3) -> [[f32; 4]; 3] {
+pub(super) fn affine_rows(affine: &DAffine3) -> [[f32; 4]; 3] {
     let (m, t) = (affine.matrix3, affine.translation);
     [0, 1, 2].map(|k| m.row(k).extend(t[k]).as_vec4().to_array())
 }

@@ -148,6 +148,8 @@ pub struct ShaderVariant {
     pub is_adaptive: bool,
     /// No clip planes and no cut faces, and all rays begin at the same place of their pixels: for such pictures alone.
     pub is_whole: bool,
+    /// Whether volumes that are mixed lie on grids of their own.
+    pub has_own_grids: bool,
     /// Rays leave what lies beside the picture: depth, value, samples, and what bricks behind go on with.
     pub writes_layers: bool,
 }
@@ -234,6 +236,9 @@ impl ShaderVariant {
             },
             is_adaptive: settings.adaptive_steps.is_some(),
             is_whole: false,
+            has_own_grids: parts
+                .iter()
+                .any(|part| part.volume.grid() != parts[0].volume.grid()),
             writes_layers: true,
         }
     }
@@ -254,6 +259,8 @@ impl ShaderVariant {
     /// The shader of that name for such pictures: the leanest that there is, [`Self::is_whole`] before one that writes
     /// no layers.
     pub(super) fn shader(&self, name: &str) -> &'static Shader {
+        let own = if self.has_own_grids { ".own" } else { "" };
+        let name = &format!("{name}{own}");
         let whole: &[&str] = if self.is_whole {
             &[".whole", ""]
         } else {

@@ -1,4 +1,4 @@
-//! Several volumes on one grid, put together sample by sample: the words, the parameters, and the CPU reference of
+//! Several volumes in one place, put together sample by sample: the words, the parameters, and the CPU reference of
 //! `shaders/lib/material_channels.wgsl`, `sample_colors.wgsl` and `material_colors.wgsl`.
 //!
 //! ```text
@@ -12,6 +12,7 @@
 //! up their emission and their extinction (Max 1995). It does not depend on the order of channels.
 
 use super::Error;
+use super::own_grid::{ChannelGrids, are_own};
 use crate::color::decode_srgb;
 use crate::picture::ColorSpace;
 use crate::real::Real;
@@ -19,7 +20,7 @@ use crate::resident::{Cell, GpuTransfer, GpuVolume};
 use crate::shaders::{FrameFields, MAX_CHANNELS};
 use crate::transfer::TransferFunction;
 
-/// How volumes on one grid go together.
+/// How volumes go together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum SampleInputs {
     /// There is one.
@@ -103,7 +104,7 @@ pub enum Role {
 /// One of the volumes that are put together, on the device.
 #[derive(Clone, Copy, Debug)]
 pub struct GpuChannel<'a> {
-    /// Cut into the same bricks as the others: see [`GpuVolume::several`].
+    /// Cut into the same bricks as the others ([`GpuVolume::several`]), or on a grid of its own: all in one brick each then.
     pub volume: &'a GpuVolume,
     /// What it is.
     pub role: Role,
@@ -134,11 +135,18 @@ pub(super) fn set_channels(
     fn cells<'a>(part: &GpuChannel<'a>) -> impl Iterator<Item = Cell> + 'a {
         part.volume.bricks().iter().map(|brick| brick.cell)
     }
+    let grids: Vec<_> = parts.iter().map(|part| *part.volume.grid()).collect();
+    let is_whole = |part: &GpuChannel| part.volume.bricks().len() == 1;
+    if are_own(&grids) && !parts.iter().all(is_whole) {
+        return Err(Error::OwnGridsInBricks);
+    }
+    let ChannelGrids { from_voxel, dims } = ChannelGrids::new(&grids);
+    (fields.channel_from_voxel, fields.channel_dims) = (from_voxel, dims);
     let is_classified = parts.iter().any(|part| part.role == Role::Material);
     fields.colors_are_classified = is_classified.into();
     for (c, part) in parts.iter().enumerate() {
-        let (volume, first) = (part.volume, parts[0].volume);
-        if volume.grid() != first.grid() || cells(part).ne(cells(&parts[0])) {
+        let volume = part.volume;
+        if !are_own(&grids) && cells(part).ne(cells(&parts[0])) {
             return Err(Error::OtherGrid);
         }
         let coding = volume.texel().coding;

@@ -42,6 +42,8 @@ pub mod mida;
 pub mod mixture;
 mod modes;
 mod names;
+#[doc(hidden)]
+pub mod own_grid;
 mod patch_slicer;
 mod patches;
 mod per_mode;

@@ -57,4 +57,5 @@ mod untrusted;
 mod view;
 mod weather;
 mod widgets;
+mod with;
 mod words;

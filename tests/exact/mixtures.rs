@@ -2,6 +2,7 @@
 //! is what independent emitters and absorbers in one place are.
 
 mod opacity;
+mod own_grids;
 mod preclassified;
 
 use crate::shared::{
@@ -479,8 +480,7 @@ fn what_cannot_be_mixed_is_refused() {
         on_cpu
     };
     let channels = |volume, role, count| vec![channel(volume, &transfer, role); count];
-    let elsewhere = channels(&moved, Role::Numbers, 1);
-    let found = refused(Mode::Composite, Beside::Channels(&elsewhere));
+    let found = refused(Mode::Composite, Beside::Colors(&[&volume, &moved]));
     assert_eq!(found, Error::OtherGrid);
     let many = channels(&volume, Role::Numbers, 4);
     let found = refused(Mode::Composite, Beside::Channels(&many));

@@ -32,6 +32,7 @@ pub fn of_film(plan: &Plan, frames: &Frames) -> Result<Value, Error> {
         "labels": labels?,
         "label_names": label_names?,
         "opacity_from": stamp_of(plan.scene.opacity.file())?,
+        "with": plan.scene.with.files().map(|file| stamp_of(Some(file))).collect::<Result<Vec<_>, _>>()?,
         "header": hash_of(|hasher| std::hash::Hasher::write(hasher, header.as_bytes())),
         "bits": match depth { BitDepth::Eight => 8, BitDepth::Sixteen => 16 },
         "black_behind": !keeps_transparency(&plan.target),

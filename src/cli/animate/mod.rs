@@ -299,7 +299,7 @@ impl Animate {
 
     /// All that the words say, checked as far as it can be without a voxel.
     fn plan(&mut self, progress: &Progress) -> Result<(Plan, Box<dyn Source>), Error> {
-        self.scene.classification.inline_file()?;
+        self.scene.inline_files()?;
         let mut scene = match &self.scene_file {
             Some(path) => scene_file::overlay(scene_file::read(path)?, &self.scene),
             None => self.scene.clone(),

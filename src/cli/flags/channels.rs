@@ -171,7 +171,7 @@ impl FromStr for ChannelWord {
     }
 }
 
-fn window_of(text: &str) -> Result<[f64; 2], String> {
+pub(super) fn window_of(text: &str) -> Result<[f64; 2], String> {
     let ends = text.split_once(':').and_then(|(low, high)| {
         let ends: [f64; 2] = [low.parse().ok()?, high.parse().ok()?];
         (ends[0] < ends[1] && (ends[1] - ends[0]).is_finite()).then_some(ends)

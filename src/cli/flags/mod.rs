@@ -35,6 +35,7 @@ mod subject;
 mod time;
 mod values;
 mod window;
+mod with;
 mod words;
 
 pub use crate::look::{context, summary};
@@ -62,6 +63,7 @@ pub use section::SectionFlags;
 pub use subject::Subject;
 pub use values::{preset, with_causes};
 pub use window::WindowWord;
+pub use with::{WithFlags, WithWord};
 
 use super::Error;
 use crate::technique::Settings;
@@ -94,6 +96,8 @@ pub struct SceneFlags {
     #[command(flatten)]
     pub channels: ChannelFlags,
     #[command(flatten)]
+    pub with: WithFlags,
+    #[command(flatten)]
     pub labels: LabelFlags,
     #[command(flatten)]
     pub light: LightFlags,
@@ -121,6 +125,12 @@ pub struct SceneFlags {
 }
 
 impl SceneFlags {
+    /// Reads the files of functions that the words name.
+    pub fn inline_files(&mut self) -> Result<(), Error> {
+        self.classification.inline_file()?;
+        self.with.inline_files()
+    }
+
     /// What to compute, for a picture kept so exactly.
     pub fn settings(&self, depth: Depth) -> Result<Settings, Error> {
         self.settings_of(&self.sampling, depth)
@@ -171,7 +181,8 @@ impl SceneFlags {
         let is_one = !self.channels.are_given()
             && self.input.component != Some(Component::All)
             && self.labels.labels.is_none()
-            && !self.opacity.are_given();
+            && !self.opacity.are_given()
+            && self.with.with.is_empty();
         is_one && self.classification.wants_slabs() && !self.sampling.says_how()
     }
 

@@ -87,6 +87,7 @@ impl<'a> Chosen<'a> {
 
     /// How values are seen, where the flags do not say it.
     fn keep_colors(&self, scene: &mut SceneFlags) {
+        self.keep_with(scene);
         if !self.channels.is_empty() {
             scene.channels.channels.clear();
             scene.channels.channel = self.channels.to_vec();
@@ -121,6 +122,23 @@ impl<'a> Chosen<'a> {
         }
         if let (false, Some(function)) = (self.mode.is_projection(), self.function) {
             self.keep_function(scene, function);
+        }
+    }
+
+    /// The functions of the volumes of `--with`, which stand behind channels of the file.
+    fn keep_with(&self, scene: &mut SceneFlags) {
+        let Beside::Channels(channels) = self.beside else {
+            return;
+        };
+        let of_numbers = channels.iter().filter(|one| one.role == Role::Numbers);
+        let of_numbers: Vec<_> = of_numbers.collect();
+        let words = &mut scene.with.with;
+        let first = of_numbers.len().saturating_sub(words.len());
+        for (word, channel) in words.iter_mut().zip(&of_numbers[first..]) {
+            if let Some(function) = channel.transfer {
+                word.function = Some(inlined(function));
+                (word.preset, word.colormap, word.color, word.window) = (None, None, None, None);
+            }
         }
     }
 

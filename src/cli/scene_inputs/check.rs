@@ -8,7 +8,8 @@ use crate::technique::{Mode, Settings};
 use crate::volume::Header;
 /// Which of the numbers of a voxel are drawn, and what a person should know of it.
 pub(super) fn plan(scene: &SceneFlags, header: &Header) -> Result<(Plan, Option<String>), Error> {
-    let room = MAX_CHANNELS as usize - usize::from(scene.labels.labels.is_some());
+    let beside = scene.with.with.len() + usize::from(scene.labels.labels.is_some());
+    let room = (MAX_CHANNELS as usize).saturating_sub(beside);
     scene.channels.plan(&scene.input, header, room)
 }
 
@@ -22,6 +23,7 @@ pub fn shows_several(scene: &SceneFlags, header: &Header) -> Result<bool, Error>
 pub(super) fn has_beside(scene: &SceneFlags) -> bool {
     let mode = scene.sampling.mode.unwrap_or_default();
     scene.labels.labels.is_some()
+        || !scene.with.with.is_empty()
         || scene.modes.paint(mode).is_some()
         || scene.opacity.are_given()
         || scene.sampling.preclassified
@@ -44,6 +46,35 @@ pub fn check(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
     })
 }
 
+/// What volumes of `--with` do not go with.
+fn check_with(scene: &SceneFlags, mode: Mode) -> Result<(), Error> {
+    let with = scene.with.with.len();
+    if with == 0 {
+        return Ok(());
+    }
+    if mode != Mode::Composite && !mode.is_projection() {
+        return Err(Error::usage(
+            format!("--with draws several volumes, and --mode {mode} draws one"),
+            "leave out --mode, or take one that projects: --mode mip",
+        ));
+    }
+    let others = [
+        scene.labels.labels.is_some(),
+        scene.opacity.are_given(),
+        true,
+    ];
+    let all = with + others.into_iter().filter(|is_there| *is_there).count();
+    if all > MAX_CHANNELS as usize {
+        return Err(Error::usage(
+            format!(
+                "{all} volumes: at most {MAX_CHANNELS} can be drawn together, INPUT, labels and numbers of opacity among them"
+            ),
+            "leave out some of --with",
+        ));
+    }
+    Ok(())
+}
+
 fn check_in(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
     let mode = settings.mode;
     scene.modes.check(settings)?;
@@ -53,6 +84,7 @@ fn check_in(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
             "leave out --mode or --labels",
         ));
     }
+    check_with(scene, mode)?;
     scene.opacity.check()?;
     preclassified::check(scene, settings)?;
     if scene.opacity.are_given() && mode != Mode::Composite {

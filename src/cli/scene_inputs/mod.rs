@@ -9,6 +9,7 @@ mod points;
 mod preclassified;
 mod reader;
 mod streamed;
+mod with;
 
 pub use check::{check, shows_several};
 pub use streamed::{is_wanted as wants_stream, open as open_stream};
@@ -254,6 +255,16 @@ impl SceneInputs {
             }
             others.push(by);
         }
+        if !scene.with.with.is_empty() {
+            let with = reader.with(&shown.volume.grid(), shown.height_factor)?;
+            shown.join(with)?;
+            if settings.mode == Mode::Composite && says_nothing(&scene.classification)? {
+                fade(&mut shown.classification);
+                progress.note(
+                    "the volume is drawn faint, so that the others are seen inside; a --preset or --tf is drawn as it is",
+                );
+            }
+        }
         if scene.labels.labels.is_some() {
             let Others::Channels(others) = &mut shown.others else {
                 return Err(Error::usage(
@@ -282,6 +293,26 @@ impl SceneInputs {
             others.push(map);
         }
         Ok(shown)
+    }
+
+    /// Puts other volumes of numbers beside those that are there.
+    fn join(&mut self, with: Vec<Other>) -> Result<(), Error> {
+        let Others::Channels(others) = &mut self.others else {
+            return Err(Error::usage(
+                "--with joins volumes of numbers, and this volume is one of colours",
+                "take one of them: --component 0",
+            ));
+        };
+        if let Classification::Function(function) = &self.classification
+            && function.uses_gradient()
+        {
+            return Err(Error::usage(
+                "--with: widgets and gradient opacity are for one volume alone, and several are drawn",
+                "take a function of the value alone",
+            ));
+        }
+        others.extend(with);
+        Ok(())
     }
 
     /// True where the file says how its axes lie, in a patient or on the Earth.

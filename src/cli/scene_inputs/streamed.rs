@@ -24,7 +24,9 @@ pub fn is_wanted(
     let header = source.header();
     let what = match () {
         () if plan(scene, header)?.0 != Plan::One => Some("several numbers a voxel"),
-        () if has_beside(scene) => Some("--labels and what else is seen together with a volume"),
+        () if has_beside(scene) => {
+            Some("--with, --labels and what else is seen together with a volume")
+        }
         () if scene.denoise.is_some() => Some("--denoise"),
         () if !settings.technique.streams() => {
             Some("--technique slices-3d, slices-2d, shear-warp and splat")

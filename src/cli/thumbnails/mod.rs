@@ -199,7 +199,7 @@ impl Thumbnails {
                 "name volumes and folders: thumbnails scans -o pictures",
             ));
         }
-        self.scene.classification.inline_file()?;
+        self.scene.inline_files()?;
         let mut scene = match &self.scene_file {
             Some(path) => scene_file::overlay(scene_file::read(path)?, &self.scene),
             None => self.scene.clone(),

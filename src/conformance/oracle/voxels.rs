@@ -12,7 +12,7 @@ use super::PictureCase;
 use crate::technique::Filter;
 use crate::technique::slices_2d::stack_axis;
 use crate::volume::{Rescale, Volume, Voxels};
-use glam::{DVec3, dvec3};
+use glam::{DAffine3, DVec3, dvec3};
 
 /// A volume of f32 and the same numbers in f64.
 #[derive(Clone, Debug)]
@@ -36,6 +36,19 @@ impl Numbers {
             volume: volume.expect("as many voxels as the grid has"),
             dims: dims.map(i64::from),
         }
+    }
+
+    /// The same field in the box, on a grid of its own: with two voxels more on each side, which repeat the outermost.
+    pub fn bordered(&self) -> Volume {
+        let dims = self.volume.dims.map(|n| n + 4);
+        let [nx, ny, nz] = dims.map(i64::from);
+        let all = (0..nz).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])));
+        let voxels = all.map(|at| self.voxel(at.map(|n| n - 2)) as f32);
+        let border = DAffine3::from_translation(DVec3::splat(-2.0));
+        let affine = self.volume.world_from_voxel * border;
+        let voxels = Voxels::F32(voxels.collect());
+        let made = Volume::from_voxels(dims, affine, voxels, Rescale::default(), None);
+        made.expect("as many voxels as the grid has")
     }
 
     fn voxel(&self, at: [i64; 3]) -> f64 {

@@ -57,6 +57,8 @@ enum Look {
     Clipped,
     /// Two things in one place.
     Channels,
+    /// The same, one of them on a grid of its own.
+    OwnGrid,
     /// Colour by one, opacity by the other.
     Opacity,
     /// Names of things beside numbers.
@@ -85,6 +87,7 @@ impl Look {
             Self::Widget(i) => WIDGETS[i],
             Self::Clipped => "clipped",
             Self::Channels => "channels",
+            Self::OwnGrid => "own_grid",
             Self::Opacity => "opacity_beside",
             Self::Labels => "labels",
             Self::Exact => "exact",
@@ -109,9 +112,10 @@ pub fn cases() -> Vec<Case> {
             all.push((placement, composite, look, linear));
         }
         all.extend((0..WIDGETS.len()).map(|i| (placement, composite, Look::Widget(i), linear)));
-        for look in DIMMED
-            .into_iter()
-            .chain([Look::Channels, Look::Opacity, Look::Labels])
+        for look in
+            DIMMED
+                .into_iter()
+                .chain([Look::Channels, Look::OwnGrid, Look::Opacity, Look::Labels])
         {
             all.push((placement, composite, look, linear));
         }
@@ -162,7 +166,11 @@ fn is_hidden(placement: Placement, mode: Mode, look: Look, filter: Filter) -> bo
     let is_under = placement.order == Order::FrontToBack;
     let is_steep = matches!(look.word(), "contour" | "gaussian");
     let is_coarse = filter == Filter::CatmullRom;
-    ground::hides_maxima(placement, mode, filter) || is_under && (is_steep || is_coarse)
+    // A stack has no places between its slices.
+    let is_of_stack = placement.technique.draws_stacks() && look == Look::OwnGrid;
+    is_of_stack
+        || ground::hides_maxima(placement, mode, filter)
+        || is_under && (is_steep || is_coarse)
 }
 
 /// Where rays through the whole grid may be off by so much that a pass would prove little: these looks are asked of a part
@@ -219,10 +227,11 @@ fn draw(
         }
     });
     let parts = parts(&shot, look);
+    let bordered = (look == Look::OwnGrid).then(|| parts[1].numbers.bordered());
     let beside: Vec<Channel> = parts[1..]
         .iter()
         .map(|part| Channel {
-            volume: &part.numbers.volume,
+            volume: bordered.as_ref().unwrap_or(&part.numbers.volume),
             transfer: Some(&part.function),
             role: part.role,
         })
@@ -350,7 +359,7 @@ fn parts(shot: &PictureCase, look: Look) -> Vec<Part> {
         vec![first, part(tinted.clone(), role, field)]
     };
     match look {
-        Look::Channels => beside(Role::Numbers, &other),
+        Look::Channels | Look::OwnGrid => beside(Role::Numbers, &other),
         Look::Opacity => beside(Role::Opacity, &other),
         Look::Exact => vec![part(function.clone(), Role::Numbers, &saddles)],
         Look::Labels => beside(Role::Labels, &|p| {

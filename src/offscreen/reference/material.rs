@@ -1,12 +1,13 @@
 //! What the volumes of a scene are made of in one place: classified, by gradients where they count, and lit.
 
-use super::ReferenceRays;
+use super::{ReferenceRays, filtered};
 use crate::real::{Real, dot, scale};
 use crate::scene::{Beside, Scene};
 use crate::shaders::Frame;
 use crate::technique::gradient::gradient_of;
 use crate::technique::gradient_taps::weighted_gradient;
 use crate::technique::mixture::{color_of, colored, dimmed, material_of};
+use crate::technique::own_grid::place_in_channel;
 use crate::technique::second_derivative::second_derivative_of;
 use crate::technique::shading::{Lamps, shade};
 use crate::technique::{Filter, Operator, Role};
@@ -85,17 +86,23 @@ impl<R: Real> ReferenceRays<'_, R> {
             let [r, g, b] = shade(&self.frame, [r, g, b], gradient, &lamps);
             return Some([r, g, b, extinction]);
         }
+        let look = |c: usize, volume: &Volume, filter| match volume.grid() == self.volumes[0].grid()
+        {
+            true => look(volume, filter),
+            false => filtered(volume, filter, place_in_channel(&self.frame, c, p)?),
+        };
         let mut found = [None; crate::shaders::MAX_CHANNELS as usize];
         for (c, (volume, role)) in self.volumes.iter().zip(&self.roles).enumerate() {
             found[c] = match role {
-                Role::Numbers | Role::Opacity | Role::Material => look(volume, settings.filter),
-                Role::Labels => Some(look(volume, Filter::Nearest)?),
+                Role::Numbers | Role::Opacity | Role::Material => look(c, volume, settings.filter),
+                Role::Labels => Some(look(c, volume, Filter::Nearest)?),
             };
         }
         let found = &found[..self.roles.len()];
         let material = material_of(&self.roles, found, |c, value| self.classified(c, value))?;
         let dimmed_mark = Some(R::from_f64(DIMMED.into()));
-        let is_dimmed = |marks| look(marks, Filter::Nearest) == dimmed_mark;
+        let is_dimmed =
+            |(c, marks): &(usize, Volume)| look(*c, marks, Filter::Nearest) == dimmed_mark;
         Some(match self.marks.iter().any(is_dimmed) {
             true => dimmed(material, R::from_f32(self.frame.dim)),
             false => material,
@@ -135,11 +142,12 @@ pub(super) fn steepness<R: Real>(
     }
 }
 
-/// Which voxels of the scene's label maps are dimmed.
-pub(super) fn marks_of_scene(scene: &Scene) -> Vec<Volume> {
-    let parts = scene.volumes().into_iter().zip(scene.roles());
-    let maps = parts.filter(|(_, role)| *role == Role::Labels);
-    maps.filter_map(|(map, _)| marks_of(map)).collect()
+/// Which voxels of the scene's label maps are dimmed, by their channels.
+pub(super) fn marks_of_scene(scene: &Scene) -> Vec<(usize, Volume)> {
+    let parts = scene.volumes().into_iter().zip(scene.roles()).enumerate();
+    let maps = parts.filter(|(_, (_, role))| *role == Role::Labels);
+    maps.filter_map(|(c, (map, _))| Some((c, marks_of(map)?)))
+        .collect()
 }
 
 /// A material without lights: all light is ambient.

@@ -237,8 +237,12 @@ impl Renderer<'_> {
             is_mixed: halo.is_mixed && role != Role::Labels,
             ..halo
         };
+        let voxels = self.volumes[self.shown + number];
+        if volume.grid() != parts[0].volume.grid() {
+            return MacroCells::of_channel(gpu, parts[0].volume, volume, halo, voxels);
+        }
         match gpu.is_cpu() && volume.spline().is_none() {
-            true => MacroCells::of_voxels(gpu, volume, halo, self.volumes[self.shown + number]),
+            true => MacroCells::of_voxels(gpu, volume, halo, voxels),
             false => MacroCells::new(gpu, volume, halo),
         }
     }
