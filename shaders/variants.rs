@@ -41,7 +41,7 @@ impl Slot {
 /// llvmpipe (`opaque_predicates.rs`).
 pub const CONSTANTS: &[&str] = &[
     "software", "filter", "holes", "lattice", "cuts", "transfer", "end", "mode", "kernel",
-    "operator", "blend", "output", "topology", "layers", "sheets", "take", "grids",
+    "operator", "blend", "output", "topology", "layers", "sheets", "take", "grids", "light",
 ];
 
 /// The name of an import with its slots filled. `{slot=word}` has that word where an entry has no such slot.
@@ -108,6 +108,7 @@ pub const SILENT: &[&str] = &[
     "triangles",
     "layers",
     "shared",
+    "unlit",
 ];
 /// Who reads the parameters of slices: the fragments, or the vertices for them (`flat_varyings.rs`).
 const PARAMETERS: Slot = slot("parameters", &["uniform", "planes", "stack"]);
@@ -137,6 +138,8 @@ const ADAPTIVE: Slot = slot("inputs", &["adaptive"]);
 const WHOLE: Slot = slot("holes", &["none"]);
 /// Whether volumes that are mixed lie on the grid of the first, or on grids of their own.
 const GRIDS: Slot = constant("grids", &["shared", "own"]);
+/// Whether light falls on volumes that are mixed.
+const LIGHT: Slot = constant("light", &["unlit", "lit"]);
 const MIXED: Slot = slot("inputs", &["channels", "colors"]);
 const MODE: Slot = slot("mode", &["composite"]);
 /// Modes that slicers do not have leave the lattice of slicers to them.
@@ -191,7 +194,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     (
         "raycast",
         &[
-            LINE, MODE, MIXED, LATTICE, NARROW, HOLES, TABLE, GRIDS, LAYERS,
+            LINE, MODE, MIXED, LATTICE, NARROW, HOLES, TABLE, LIGHT, GRIDS, LAYERS,
         ],
     ),
     (
@@ -204,6 +207,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
             NARROW_FETCHED,
             HOLES,
             POINTS,
+            LIGHT,
             GRIDS,
             LAYERS,
         ],
@@ -270,7 +274,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     (
         "slices_3d",
-        &[TESTED, BLEND, MIXED, NARROW, HOLES, TRANSFER, GRIDS],
+        &[TESTED, BLEND, MIXED, NARROW, HOLES, TRANSFER, LIGHT, GRIDS],
     ),
     (
         "slices_3d",
@@ -301,7 +305,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     (
         "slices_2d",
-        &[TESTED, BLEND, MIXED, NARROW, HOLES, TRANSFER],
+        &[TESTED, BLEND, MIXED, NARROW, HOLES, TRANSFER, LIGHT],
     ),
     ("slices_2d", &[NUMBER, SCALAR, END, FILTER, HOLES]),
     (

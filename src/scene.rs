@@ -198,8 +198,7 @@ impl<'a> Scene<'a> {
             mix if mix.is_of_one() => Ok(()),
             _ if self.uses_gradient() => Err(Error::GradientTransferAlone),
             SampleInputs::Channels if mode == Mode::Iso => self.check_painted(),
-            _ if self.settings.shading.is_some() => Err(Error::NotShadedTogether),
-            _ if self.settings.ambient_occlusion.is_some() => Err(Error::NotOccludedTogether),
+            _ if self.settings.check_lit_mixture().is_err() => self.settings.check_lit_mixture(),
             // Modes that project draw them one by one.
             _ if filter.kernel().is_some() && !mode.is_projection() => {
                 Err(Error::FilterAlone { filter })

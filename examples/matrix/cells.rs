@@ -287,6 +287,54 @@ pub const FEATURES: &[Feature] = &[
         Seen::Classified,
         |_| {},
     ),
+    feature(
+        "light, several channels",
+        "`--channel`, `--shading phong`",
+        Seen::Channels,
+        |s| {
+            s.shading = Some(lights());
+        },
+    ),
+    feature(
+        "light, volumes on grids of their own",
+        "`--with`, `--shading phong`",
+        Seen::OwnGrids,
+        |s| {
+            s.shading = Some(lights());
+        },
+    ),
+    feature(
+        "light, labels over it",
+        "`--labels`, `--shading phong`",
+        Seen::Labelled,
+        |s| {
+            s.shading = Some(lights());
+        },
+    ),
+    feature(
+        "light, colours",
+        "a file of colours, `--shading phong`",
+        Seen::Colored,
+        |s| {
+            s.shading = Some(lights());
+        },
+    ),
+    feature(
+        "light, opacity by another",
+        "`--opacity-from`, `--shading phong`",
+        Seen::Veiled,
+        |s| {
+            s.shading = Some(lights());
+        },
+    ),
+    feature(
+        "light, pre-classification",
+        "`--preclassified`, `--shading phong`",
+        Seen::Classified,
+        |s| {
+            s.shading = Some(lights());
+        },
+    ),
 ];
 
 fn lights() -> Shading {

@@ -2,7 +2,7 @@
 //
 //     p' = A p        p in voxels of the volume, p' in those of the channel
 //
-// A channel has data in the box of its grid alone. CPU reference: src/technique/own_grid.rs.
+// A channel has data in the box of its grid alone, but for one that lies on the grid of the volume. CPU reference: src/technique/own_grid.rs.
 
 #import own_{filter}
 #import footprint
@@ -29,7 +29,8 @@ fn channel_footprint(channel: u32, place: Place) -> Footprint {
 
 fn is_in_channel(channel: u32, place: Place) -> bool {
     let own = place_in_channel(channel, place);
-    return all(own >= vec3(0.0)) && all(own <= dims_of_channel(channel));
+    let is_inside = all(own >= vec3(0.0)) && all(own <= dims_of_channel(channel));
+    return frame.channel_dims[channel].w == 0.0 || is_inside;
 }
 
 fn place_in_channel(channel: u32, place: Place) -> vec3<f32> {

@@ -76,9 +76,12 @@ struct Frame {
     is_first_brick: u32,
     // Several volumes in one place, one lane a channel; lane 0 of codes is that of the volume above.
     channel_count: u32,
-    // From voxel space to that of each channel, three rows each, and voxels along its axes.
+    // From voxel space to that of each channel, three rows each, and voxels along its axes; not 0 in the last
+    // lane of one on a grid of its own.
     channel_from_voxel: array<vec4<f32>, CHANNEL_ROWS>,
     channel_dims: array<vec4<f32>, MAX_CHANNELS>,
+    // Makes gradients of channels comparable: the least gradient of the first that is a surface over that of each.
+    channel_gradient_scale: vec4<f32>,
     channel_code_scale: vec4<f32>,
     channel_code_offset: vec4<f32>,
     channel_slope: vec4<f32>,

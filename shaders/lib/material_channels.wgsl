@@ -9,6 +9,7 @@
 // CPU reference: src/technique/mixture.rs.
 
 #import channel_{transfer}
+#import mixture_{light=unlit}_channels
 
 fn material_of(sample: Sample) -> Classified {
     var light = vec3(0.0);
@@ -21,7 +22,11 @@ fn material_of(sample: Sample) -> Classified {
             let one = classify_channel(c, sample.values[c]);
             let is_opacity = frame.channel_is_opacity[c] != 0u;
             if (before_has || !is_opacity) && !is_opaque_by_next(c) {
-                light += one.extinction * select(one.color, color_before, is_opacity);
+                let color = select(one.color, color_before, is_opacity);
+                // What is transparent shows no light: no gradient is made for it.
+                if one.extinction != 0.0 {
+                    light += one.extinction * lit_channel(c, color, sample);
+                }
                 extinction += one.extinction;
             }
             color_before = one.color;

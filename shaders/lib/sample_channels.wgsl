@@ -7,6 +7,9 @@ struct Sample {
     has_data: vec4<bool>,
     // By its label.
     is_dimmed: bool,
+    place: Place,
+    // That of the pixel's ray, in world space, a unit vector.
+    ray_direction: vec3<f32>,
 }
 
 // True where the next channel says how opaque this one is.
@@ -33,7 +36,7 @@ fn has_data(place: Place) -> bool {
 }
 
 fn sample_at(place: Place, ray_direction: vec3<f32>) -> Sample {
-    var found = Sample(vec4(0.0), vec4(false), false);
+    var found = Sample(vec4(0.0), vec4(false), false, place, ray_direction);
     for (var c = 0u; c < frame.channel_count; c++) {
         if channel_has_data(c, place) {
             found.values[c] = channel_value(c, place);

@@ -7,6 +7,9 @@
 struct Sample {
     srgb: vec3<f32>,
     value: f32,
+    place: Place,
+    // That of the pixel's ray, in world space, a unit vector.
+    ray_direction: vec3<f32>,
 }
 
 fn has_data(place: Place) -> bool {
@@ -21,11 +24,11 @@ fn has_data(place: Place) -> bool {
 fn sample_at(place: Place, ray_direction: vec3<f32>) -> Sample {
     let color = vec3(channel_value(0u, place), channel_value(1u, place), channel_value(2u, place));
     if frame.channel_count == 3u {
-        return Sample(color, luma(color));
+        return Sample(color, luma(color), place, ray_direction);
     }
     let alpha = channel_value(3u, place);
     // What is transparent has no colour.
-    return Sample(clamp(color / max(alpha, 1e-6), vec3(0.0), vec3(1.0)), alpha);
+    return Sample(clamp(color / max(alpha, 1e-6), vec3(0.0), vec3(1.0)), alpha, place, ray_direction);
 }
 
 // ITU-R BT.709, of sRGB numbers.

@@ -190,10 +190,10 @@ impl Error {
         }
     }
 
-    /// Light is for one volume.
+    /// Half-angle slices show one volume.
     pub fn not_shaded_together() -> Self {
         Self::usage(
-            "--shading phong is for one number a voxel, --shadows half-angle too, and several are drawn",
+            "--shadows half-angle is for one number a voxel, and several are drawn",
             "draw one of them: --component 0, without --labels, --channel and --opacity-variable",
         )
     }

@@ -7,7 +7,7 @@ use super::{
 use crate::{
     format,
     technique::Role,
-    transfer::{LabelTable, TransferFunction},
+    transfer::{LIT_LABEL_OPACITY, LabelTable, TransferFunction},
     volume::{
         Grid, TimeComponent, Volume, VolumeSelection, is_same_grid,
         labels::{dim, hide, labels_of, on_grid},
@@ -58,7 +58,9 @@ pub fn read(
     let function = if flags.only_cut() {
         nothing()
     } else {
-        let table = table.clone().unwrap_or_default();
+        let mut table = table.clone().unwrap_or_default();
+        let lit = scene.is_auto().then_some(LIT_LABEL_OPACITY);
+        table.opacity = table.opacity.or(flags.label_opacity).or(lit);
         table.function(present.keys().copied(), diagonal(&map))
     };
     say_names(&present, table.as_ref(), &function, progress);

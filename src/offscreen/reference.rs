@@ -3,6 +3,7 @@
 mod half_angle;
 mod light;
 mod material;
+mod mixture;
 mod normals;
 
 use super::fade::{faded, stacks_of};
@@ -32,7 +33,8 @@ use crate::volume::kernel::{convolved, convolved_in_slice};
 use crate::volume::sample::{linear, linear_in_slice, nearest};
 use crate::volume::{Coefficients, Grid, Volume};
 use light::light_of;
-use material::{gradient_at, marks_of_scene, steepness};
+use material::{gradient_at, steepness};
+use mixture::marks_of_scene;
 pub(super) use normals::normals;
 
 /// The picture of `scene` with all layers that its technique has.
@@ -198,6 +200,8 @@ impl<'a, R: Real> ReferenceRays<'a, R> {
         let grids: Vec<_> = scene.volumes().iter().map(|volume| volume.grid()).collect();
         let ChannelGrids { from_voxel, dims } = ChannelGrids::new(&grids);
         (frame.channel_from_voxel, frame.channel_dims) = (from_voxel, dims);
+        let ranges = scene.volumes().into_iter().map(|volume| volume.value_range);
+        frame.channel_gradient_scale = view.gradient_scales(ranges.zip(scene.roles()));
         frame.flat_gradient = view.flat_gradient(scene.volume.value_range);
         frame.reference_length = scene.reference_length() as f32;
         Ok(Self {

@@ -94,8 +94,8 @@ impl Drawn {
             }
             // Modes that need rays are refused where parameters are made: nothing is drawn by these.
             Self::Picture(Mode::Composite | Mode::Mida | Mode::Iso) => {
-                let own = if variant.has_own_grids { ".own" } else { "" };
-                format!("{slicer}.composite{mix}.{filter}.{holes}.{transfer}{own}")
+                let mixture = variant.mixture();
+                format!("{slicer}.composite{mix}.{filter}.{holes}.{transfer}{mixture}")
             }
             Self::Picture(_) => format!("{slicer}.number{depth_access}.{filter}.{holes}"),
             Self::Count => format!("{slicer}.count.nearest.none"),

@@ -180,8 +180,8 @@ pub enum Error {
         /// The mode.
         mode: Mode,
     },
-    /// Several volumes have several gradients.
-    #[error("shading is for one volume of numbers, not for several that are mixed")]
+    /// Half-angle slices show one volume.
+    #[error("half-angle slices are for one volume of numbers, not for several that are mixed")]
     NotShadedTogether,
     /// Light falls on what is composited.
     #[error(

@@ -3,7 +3,7 @@
 
 use super::splat::GpuViewPoints;
 use super::{
-    Filter, FilterBy, GpuChannel, GradientStorage, Lattice, LightVolume, Operator, Role,
+    Filter, FilterBy, GpuChannel, GradientStorage, Lattice, LightVolume, Mode, Operator, Role,
     SampleInputs, Settings, Skip,
 };
 use crate::gpu::{Bindings, Error, Gpu, Image, Layout, ParameterRing, Resource};
@@ -150,6 +150,8 @@ pub struct ShaderVariant {
     pub is_whole: bool,
     /// Whether volumes that are mixed lie on grids of their own.
     pub has_own_grids: bool,
+    /// Whether light falls on volumes that are mixed.
+    pub is_lit_mixture: bool,
     /// Rays leave what lies beside the picture: depth, value, samples, and what bricks behind go on with.
     pub writes_layers: bool,
 }
@@ -239,6 +241,7 @@ impl ShaderVariant {
             has_own_grids: parts
                 .iter()
                 .any(|part| part.volume.grid() != parts[0].volume.grid()),
+            is_lit_mixture: has_surfaces && !mix.is_of_one() && settings.mode == Mode::Composite,
             writes_layers: true,
         }
     }
@@ -256,11 +259,20 @@ impl ShaderVariant {
         }
     }
 
+    /// The parts of a shader's name that say how volumes are mixed.
+    pub(super) fn mixture(&self) -> &'static str {
+        match (self.is_lit_mixture, self.has_own_grids) {
+            (false, false) => "",
+            (false, true) => ".own",
+            (true, false) => ".lit",
+            (true, true) => ".lit.own",
+        }
+    }
+
     /// The shader of that name for such pictures: the leanest that there is, [`Self::is_whole`] before one that writes
     /// no layers.
     pub(super) fn shader(&self, name: &str) -> &'static Shader {
-        let own = if self.has_own_grids { ".own" } else { "" };
-        let name = &format!("{name}{own}");
+        let name = &format!("{name}{}", self.mixture());
         let whole: &[&str] = if self.is_whole {
             &[".whole", ""]
         } else {

@@ -182,20 +182,22 @@ pub fn opacities_have_colors(roles: &[Role]) -> bool {
 }
 
 /// The material of a sample of these values, those of labels all there; `None` for no data. `classify` gives that
-/// of one value of a channel.
+/// of one value of a channel, and `lit` the same with the light that falls on it there.
 pub fn material_of<R: Real>(
     roles: &[Role],
     values: &[Option<R>],
     classify: impl Fn(usize, R) -> [R; 4],
+    lit: impl Fn(usize, R, [R; 4]) -> [R; 4],
 ) -> Option<[R; 4]> {
     let seen = (0..values.len()).filter(|&c| roles[c] != Role::Opacity);
     let material = |c: usize| {
-        let own = classify(c, values[c]?);
+        let value = values[c]?;
+        let own = classify(c, value);
         if roles.get(c + 1) != Some(&Role::Opacity) {
-            return Some(own);
+            return Some(lit(c, value, own));
         }
-        let [r, g, b, _] = own;
-        Some([r, g, b, classify(c + 1, values[c + 1]?)[3]])
+        let ([r, g, b, _], opaque) = (own, values[c + 1]?);
+        Some(lit(c + 1, opaque, [r, g, b, classify(c + 1, opaque)[3]]))
     };
     let mut there = seen.filter_map(material).peekable();
     there.peek()?;

@@ -32,6 +32,8 @@ mod light_field;
 mod light_paths;
 mod light_plan;
 mod light_volume;
+#[doc(hidden)]
+pub mod lit_mixture;
 mod loop_limit;
 mod march;
 #[doc(hidden)]

@@ -4,7 +4,7 @@
 //! p' = A p        A = voxel'_from_world world_from_voxel
 //! ```
 //!
-//! A volume has data in the box of its grid alone. CPU reference of `shaders/lib/channels_on_own.wgsl`.
+//! A volume on a grid of its own has data in the box of that alone. CPU reference of `shaders/lib/channels_on_own.wgsl`.
 
 use super::frame::affine_rows;
 use super::{Error, Settings, compatibility::refuse};
@@ -17,7 +17,7 @@ use crate::volume::Grid;
 pub struct ChannelGrids {
     /// Rows of A, three a channel.
     pub from_voxel: [[f32; 4]; CHANNEL_ROWS as usize],
-    /// Voxels along the axes of each.
+    /// Voxels along the axes of each, and 1 for one on a grid of its own.
     pub dims: [[f32; 4]; MAX_CHANNELS as usize],
 }
 
@@ -35,7 +35,7 @@ impl ChannelGrids {
             };
             made.from_voxel[3 * c..3 * c + 3].copy_from_slice(&affine_rows(&a));
             let [x, y, z] = grid.dims.map(|n| n as f32);
-            made.dims[c] = [x, y, z, 0.0];
+            made.dims[c] = [x, y, z, f32::from(u8::from(*grid != grids[0]))];
         }
         made
     }
@@ -52,11 +52,10 @@ pub fn place_in_channel<R: Real>(frame: &Frame, channel: usize, p: [R; 3]) -> Op
         let [x, y, z, w] = frame.channel_from_voxel[3 * channel + k].map(R::from_f32);
         x * p[0] + y * p[1] + z * p[2] + w
     });
-    let dims = frame.channel_dims[channel];
-    let zero = R::from_f64(0.0);
-    (0..3)
-        .all(|k| own[k] >= zero && own[k] <= R::from_f32(dims[k]))
-        .then_some(own)
+    let [x, y, z, is_own] = frame.channel_dims[channel];
+    let is_inside = |(place, dim): (R, f32)| place >= R::from_f64(0.0) && place <= R::from_f32(dim);
+    let are_inside = own.into_iter().zip([x, y, z]).all(is_inside);
+    (is_own == 0.0 || are_inside).then_some(own)
 }
 
 impl Settings {

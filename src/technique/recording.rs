@@ -197,6 +197,10 @@ impl View<'_> {
         set_channels(parts, transfer, &mut fields)?;
         if parts.len() > 1 {
             self.settings.check_mixed()?;
+            let ranges = parts
+                .iter()
+                .map(|part| (part.volume.value_range(), part.role));
+            fields.channel_gradient_scale = self.gradient_scales(ranges);
         }
         let is_classified = parts.iter().any(|part| part.role == Role::Material);
         self.settings

@@ -113,6 +113,10 @@ fn a_scene_keeps_all_that_was_chosen() {
         ("cells-mip", "phantom:cells,n=24 --mode mip"),
         ("over", "phantom:head,n=40 --labels ball.nrrd"),
         (
+            "with",
+            "phantom:head,n=40 --with phantom:gauss,n=12,preset=pet",
+        ),
+        (
             "opaque",
             "phantom:storm,n=24 --variable temperature --opacity-variable cloud",
         ),

@@ -102,9 +102,9 @@ fn what_cannot_be_opaque_by_other_numbers_says_so() {
             "--preintegrated",
         ),
         (
-            format!("{storm} {by} --shading phong"),
+            format!("{storm} {by} --ambient-occlusion"),
             2,
-            "--shading phong",
+            "--ambient-occlusion",
         ),
         (format!("{storm} {by} --filter cubic"), 2, "--filter"),
         (format!("{storm} {by} --tf widgets.json"), 2, "widgets"),

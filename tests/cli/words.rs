@@ -77,8 +77,8 @@ fn a_word_that_cannot_be_is_a_usage_error() {
         ),
         ("render phantom:fog -o a.png --light 0,0,0", "a direction"),
         (
-            "render phantom:cells,n=8 -o a.png --shading phong --component all",
-            "--shading phong is for one number a voxel",
+            "render phantom:cells,n=8 -o a.png --shadows half-angle --technique slices-3d --component all",
+            "--shadows half-angle is for one number a voxel",
         ),
         ("render phantom:fog -o a.png --repeat 0", "--repeat"),
         ("render phantom:fog -o a.png --bit-depth 12", "--bit-depth"),

@@ -136,6 +136,7 @@ fn lit(
                 context: scene.classification.context.as_ref(),
                 classification: &ready[0].classification,
                 is_alone: true,
+                is_beside_others: false,
             };
             (with_light(&scene, seen, made_for), Some(ready))
         }

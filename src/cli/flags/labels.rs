@@ -42,6 +42,10 @@ pub struct LabelFlags {
     #[arg(long, value_name = "N,A-B,...[:F]", help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub label_dim: Option<DimmedLabels>,
+    /// How opaque labels are that lie over a volume, where no table says it; what a scene keeps.
+    #[arg(skip)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub label_opacity: Option<f64>,
 }
 
 /// `1,2,5-9`, or `1,2,5-9:0.1`.

@@ -8,7 +8,7 @@ use crate::cli::flags::{
 use crate::cli::scene_inputs::SceneInputs;
 use crate::scene::{Beside, Channel};
 use crate::technique::{Filter, Level, Mode, Role};
-use crate::transfer::{ColorPoint, TransferFunction};
+use crate::transfer::{ColorPoint, LIT_LABEL_OPACITY, TransferFunction};
 
 /// What a picture or a film was drawn with, where no flag said it.
 #[derive(Clone, Copy, Debug)]
@@ -72,6 +72,9 @@ impl<'a> Chosen<'a> {
         }
         if let (Some(filter), true) = (self.filter, self.function.is_some()) {
             scene.sampling.filter.get_or_insert(filter);
+        }
+        if scene.is_auto() && scene.labels.labels.is_some() {
+            scene.labels.label_opacity.get_or_insert(LIT_LABEL_OPACITY);
         }
         self.keep_colors(&mut scene);
         if scene.light.shading.is_none() && !scene.light.is_lit(self.mode) {

@@ -36,6 +36,8 @@ pub struct Seen<'a> {
     pub classification: &'a Classification,
     /// Nothing is seen together with it.
     pub is_alone: bool,
+    /// It is seen together with labels or with volumes that stand by themselves, which light shows the shape of.
+    pub is_beside_others: bool,
 }
 
 /// The scene with light, samples and background where no flag says them.
@@ -113,7 +115,10 @@ fn is_sheets(scene: &SceneFlags, seen: Seen) -> bool {
 /// The lit scene, where light shows a shape.
 fn lit(scene: &SceneFlags, mode: Mode, seen: Seen) -> Option<SceneFlags> {
     let light = &scene.light;
-    if !seen.is_alone || light.shading == Some(ShadingWord::None) || light.shadows.is_some() {
+    if !(seen.is_alone || seen.is_beside_others)
+        || light.shading == Some(ShadingWord::None)
+        || light.shadows.is_some()
+    {
         return None;
     }
     let volume = seen.volume;

@@ -214,11 +214,6 @@ impl SceneInputs {
         if plan != Plan::One {
             scene.modes.check_several(settings.mode)?;
         }
-        // Surfaces that another variable colours are lit as they are.
-        let is_painted = plan == Plan::One && scene.modes.paint(settings.mode).is_some();
-        if settings.shading.is_some() && !is_alone && !is_painted {
-            return Err(Error::not_shaded_together());
-        }
         if settings.ambient_occlusion.is_some() && !is_alone {
             return Err(Error::not_occluded_together());
         }
@@ -327,7 +322,17 @@ impl SceneInputs {
             context: self.context.as_ref(),
             classification: &self.classification,
             is_alone: matches!(self.parts().beside(), Beside::Nothing),
+            is_beside_others: self.stand_by_themselves(),
         }
+    }
+
+    /// True for a volume of numbers with labels or other files beside it, but no channels of one and no numbers of opacity.
+    fn stand_by_themselves(&self) -> bool {
+        let Others::Channels(others) = &self.others else {
+            return false;
+        };
+        let is_opaque_by = others.iter().any(|other| other.role == Role::Opacity);
+        !others.is_empty() && self.channels.is_empty() && !is_opaque_by
     }
 
     /// What a camera is turned to.

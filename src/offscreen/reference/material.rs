@@ -1,19 +1,17 @@
 //! What the volumes of a scene are made of in one place: classified, by gradients where they count, and lit.
 
-use super::{ReferenceRays, filtered};
+use super::ReferenceRays;
+use super::mixture::SeenPlace;
 use crate::real::{Real, dot, scale};
-use crate::scene::{Beside, Scene};
+use crate::scene::Beside;
 use crate::shaders::Frame;
 use crate::technique::gradient::gradient_of;
 use crate::technique::gradient_taps::weighted_gradient;
-use crate::technique::mixture::{color_of, colored, dimmed, material_of};
-use crate::technique::own_grid::place_in_channel;
 use crate::technique::second_derivative::second_derivative_of;
 use crate::technique::shading::{Lamps, shade};
-use crate::technique::{Filter, Operator, Role};
+use crate::technique::{Filter, Operator};
 use crate::transfer::{GradientMagnitude, PackedWidgets, classify_by_gradient};
 use crate::volume::Volume;
-use crate::volume::labels::{DIMMED, marks_of};
 
 impl<R: Real> ReferenceRays<'_, R> {
     /// The gradient at `p`; `tap` filters values so many voxels away.
@@ -44,24 +42,12 @@ impl<R: Real> ReferenceRays<'_, R> {
         ray_direction: [R; 3],
     ) -> Option<[R; 4]> {
         let settings = self.scene.settings;
-        let look = |volume: &Volume, filter| look_from(volume, filter, [0; 3]);
+        let place = SeenPlace { p, ray_direction };
         if let Beside::Colors(_) | Beside::Classified(_) = self.scene.beside {
-            let mut found = [R::from_f64(0.0); 4];
-            for (number, volume) in found.iter_mut().zip(&self.volumes) {
-                *number = look(volume, settings.filter)?;
-            }
-            let [r, g, b, alpha] = found;
-            let alpha = (self.volumes.len() == 4).then_some(alpha);
-            let (srgb, value) = color_of([r, g, b], alpha);
-            if let Beside::Classified(_) = self.scene.beside {
-                let [r, g, b] = srgb;
-                return Some([r, g, b, value / R::from_f64(self.scene.reference_length())]);
-            }
-            let extinction = self.classified(0, value)[3];
-            return Some(colored(srgb, extinction, settings.color_space));
+            return self.mixed_colors(look_from, place);
         }
         if let [volume] = self.volumes[..] {
-            let value = look(volume, settings.filter)?;
+            let value = look_from(volume, settings.filter, [0; 3])?;
             let mut material = self.classified(0, value);
             let is_on_face = ray_direction == [R::from_f64(0.0); 3];
             let is_lit = self.frame.light_count != 0 && !is_on_face;
@@ -86,27 +72,7 @@ impl<R: Real> ReferenceRays<'_, R> {
             let [r, g, b] = shade(&self.frame, [r, g, b], gradient, &lamps);
             return Some([r, g, b, extinction]);
         }
-        let look = |c: usize, volume: &Volume, filter| match volume.grid() == self.volumes[0].grid()
-        {
-            true => look(volume, filter),
-            false => filtered(volume, filter, place_in_channel(&self.frame, c, p)?),
-        };
-        let mut found = [None; crate::shaders::MAX_CHANNELS as usize];
-        for (c, (volume, role)) in self.volumes.iter().zip(&self.roles).enumerate() {
-            found[c] = match role {
-                Role::Numbers | Role::Opacity | Role::Material => look(c, volume, settings.filter),
-                Role::Labels => Some(look(c, volume, Filter::Nearest)?),
-            };
-        }
-        let found = &found[..self.roles.len()];
-        let material = material_of(&self.roles, found, |c, value| self.classified(c, value))?;
-        let dimmed_mark = Some(R::from_f64(DIMMED.into()));
-        let is_dimmed =
-            |(c, marks): &(usize, Volume)| look(*c, marks, Filter::Nearest) == dimmed_mark;
-        Some(match self.marks.iter().any(is_dimmed) {
-            true => dimmed(material, R::from_f32(self.frame.dim)),
-            false => material,
-        })
+        self.mixed_channels(look_from, place)
     }
 }
 
@@ -140,14 +106,6 @@ pub(super) fn steepness<R: Real>(
         second,
         smallest_spacing: R::from_f32(frame.smallest_spacing),
     }
-}
-
-/// Which voxels of the scene's label maps are dimmed, by their channels.
-pub(super) fn marks_of_scene(scene: &Scene) -> Vec<(usize, Volume)> {
-    let parts = scene.volumes().into_iter().zip(scene.roles()).enumerate();
-    let maps = parts.filter(|(_, (_, role))| *role == Role::Labels);
-    maps.filter_map(|(c, (map, _))| Some((c, marks_of(map)?)))
-        .collect()
 }
 
 /// A material without lights: all light is ambient.
