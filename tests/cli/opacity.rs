@@ -102,7 +102,7 @@ fn what_cannot_be_opaque_by_other_numbers_says_so() {
             "--preintegrated",
         ),
         (
-            format!("{storm} {by} --ambient-occlusion"),
+            format!("{storm} {by} --ambient-occlusion 1"),
             2,
             "--ambient-occlusion",
         ),
