@@ -98,10 +98,19 @@ pub const ANSWERS: &[(&str, Fault, &str)] = &[
         "a mixture has the mean of its colours",
         Shader(
             "lib/material_channels.wgsl",
-            "light += one.extinction * select(one.color, color_before, is_opacity);",
-            "light += one.extinction * one.color;",
+            "let color = select(one.color, color_before, is_opacity);",
+            "let color = one.color;",
         ),
         "raycast.ray.composite.opacity_beside.linear_fetch.f32.perspective",
+    ),
+    (
+        "a volume on a grid of its own is read where the first one is",
+        Shader(
+            "lib/channels_on_own.wgsl",
+            "dot(frame.channel_from_voxel[row], p)",
+            "place.x",
+        ),
+        "raycast.ray.composite.own_grid.linear_fetch.f32.perspective",
     ),
     (
         "colours of a mixture are added",

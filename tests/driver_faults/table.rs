@@ -17,6 +17,7 @@ const STACK: &str = "slices_2d.over.composite.ramp.linear_fetch.u16.perspective"
 const SHEETS: &str = "splat.image.composite.plain.perspective";
 const SLICES: &str = "splat.axis.composite.plain.perspective";
 const SUMS: &str = "splat.image.xray.plain.perspective";
+const POINTS: &str = "splat.points.composite.cloud.perspective";
 const WIDE: &str = "splat.image.composite.wide.perspective";
 const CLASSIFIED: &str = "splat.axis.composite.classified.perspective";
 
@@ -352,6 +353,69 @@ pub const FAULTS: &[(&str, Fault, &str)] = &[
         "a warp of maxima counts rays without a value",
         Shader("lib/warp_value.wgsl", "sum.x / sum.y", "sum.x"),
         "reference.shear_warp.mip.plain.linear_fetch.perspective",
+    ),
+    (
+        "the last point of a list is left out",
+        Shader(
+            "splat_points.wgsl",
+            "i < list.y && !is_finished",
+            "i + 1u < list.y && !is_finished",
+        ),
+        POINTS,
+    ),
+    (
+        "points come from back to front",
+        Shader(
+            "splat_points.wgsl",
+            "let point = listed(i);",
+            "let point = listed(list.x + list.y - 1u - i);",
+        ),
+        POINTS,
+    ),
+    (
+        "points are thinner by the square root of two",
+        Shader(
+            "splat_points.wgsl",
+            "exp(-0.5 * square)",
+            "exp(-1.0 * square)",
+        ),
+        POINTS,
+    ),
+    (
+        "points end nearer to their centres",
+        Shader(
+            "splat_points.wgsl",
+            "square > frame.splat_reach * frame.splat_reach",
+            "square > frame.splat_reach",
+        ),
+        POINTS,
+    ),
+    (
+        "points behind the eye are seen",
+        Shader(
+            "lib/view_points.wgsl",
+            "select(1e30, dot(off, off), t > 0.0)",
+            "dot(off, off)",
+        ),
+        "splat.points.xray.among.perspective",
+    ),
+    (
+        "extremes of points count as far as their sums",
+        Shader(
+            "splat_points_projection.wgsl",
+            "const EXTREME_SQUARE: f32 = 4.0;",
+            "const EXTREME_SQUARE: f32 = 9.0;",
+        ),
+        "splat.points.mip.cloud.perspective",
+    ),
+    (
+        "sums of points take how much matter they are, not how much a ray meets",
+        Shader(
+            "splat_points_projection.wgsl",
+            "point.density * exp",
+            "point.length * exp",
+        ),
+        "splat.points.xray.small.perspective",
     ),
     (
         "splats are as narrow as if pixels were narrow",

@@ -4,6 +4,7 @@ mod drawn;
 mod exact;
 mod ground;
 mod main_axis;
+mod points;
 mod probe;
 mod reference;
 mod relation;
@@ -30,5 +31,6 @@ pub fn cases() -> Vec<Case> {
     cases.extend(relation::cases());
     cases.extend(reference::cases());
     cases.extend(splat::cases());
+    cases.extend(points::cases());
     cases
 }
