@@ -46,6 +46,33 @@ fn a_table_has_every_technique_mode_and_projection() {
 }
 
 #[test]
+fn scattered_points_are_measured_as_splats_and_by_no_other_technique() {
+    let folder = Folder::new();
+    let rows_of = |n: u32| format!("{},{},{},{n}\n", n % 3, n % 5, n % 7);
+    let points: String = (0..40).map(rows_of).collect();
+    folder.file("p.csv", format!("x,y,z,value\n{points}"));
+    let table = table_of(&folder, &format!("p.csv --modes composite,xray {SMALL}"));
+    let names: Vec<_> = rows(&table)
+        .iter()
+        .filter_map(|row| row["name"].as_str())
+        .collect();
+    assert_eq!(names.len(), 4, "{table}");
+    assert!(
+        names.iter().all(|name| name.starts_with("splat ")),
+        "{table}"
+    );
+    // What is counted are the points that rays meet, not samples of a volume.
+    let samples = rows(&table)[0]["samples"].as_u64().expect("a number");
+    assert!(samples > 0 && samples <= 24 * 16 * 40, "{table}");
+    let ran = folder.run(&format!("bench p.csv --techniques raycast {SMALL}"));
+    assert_eq!(ran.code, 2, "{ran:?}");
+    assert!(
+        ran.err.contains("scattered points is for splatting"),
+        "{ran:?}"
+    );
+}
+
+#[test]
 fn a_table_without_a_row_is_refused_by_name() {
     let folder = Folder::new();
     folder

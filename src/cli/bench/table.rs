@@ -70,10 +70,6 @@ enum Measured {
 pub fn measured(bench: &Bench, scene: &SceneFlags) -> Result<String, Error> {
     let progress = Progress::new(bench.progress);
     let extent_pixels = scene.picture.extent_pixels()?;
-    let base = Settings {
-        skip: !bench.no_skip,
-        ..scene.settings(Depth::Eight)?
-    };
     let inputs: Vec<_> = scene.input.path.iter().chain(&bench.more).collect();
     let modes = words_of(
         &bench.modes,
@@ -97,6 +93,11 @@ pub fn measured(bench: &Bench, scene: &SceneFlags) -> Result<String, Error> {
         progress.stage("measure", at, total);
         let mut scene = scene.clone();
         scene.input.path = Some((*input).clone());
+        scene.splat_points();
+        let base = Settings {
+            skip: !bench.no_skip,
+            ..scene.settings(Depth::Eight)?
+        };
         let base = of_mode(&base, *mode);
         // What is shown depends on the mode: channels are read for each.
         let here = Device::find(scene.one_device()?)?;
