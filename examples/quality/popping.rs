@@ -60,12 +60,7 @@ pub fn print() -> Result<(), Box<dyn Error>> {
         ];
         print!("| {} |", scene.name);
         for (published, settings) in columns {
-            let of_stack = |axis| Settings {
-                stack: Some(axis),
-                ..settings.clone()
-            };
-            let a = studio.picture(&camera(45.0), of_stack(0))?;
-            let b = studio.picture(&camera(45.0), of_stack(1))?;
+            let [a, b] = of_both_stacks(&mut studio, &settings)?;
             print_jump(published, &a, &b);
         }
         let planes = || Settings {
@@ -139,19 +134,35 @@ fn print_splats(scenes: &[Scene]) -> Result<(), Box<dyn Error>> {
 
 /// J of sheets along an axis, and what sheets that face the eye have of it beyond their neighbours.
 pub fn splat_jumps(studio: &mut Studio) -> Result<[f64; 2], Box<dyn Error>> {
-    let of_stack = |stack| Settings {
-        stack: Some(stack),
-        ..splats(Sheets::Axis)
-    };
-    let a = studio.picture(&camera(45.0), of_stack(0))?;
-    let b = studio.picture(&camera(45.0), of_stack(1))?;
+    let of_axis = stack_jump(studio, &splats(Sheets::Axis))?;
     let mut turned = |from: f64| -> Result<f64, Box<dyn Error>> {
         let a = studio.picture(&camera(from), splats(Sheets::Image))?;
         let b = studio.picture(&camera(from + 0.2), splats(Sheets::Image))?;
         Ok(jump(&a, &b))
     };
     let beside = 0.5 * (turned(44.7)? + turned(45.1)?);
-    Ok([jump(&a, &b), turned(44.9)? - beside])
+    Ok([of_axis, turned(44.9)? - beside])
+}
+
+/// J of what is drawn by stacks.
+pub fn stack_jump(studio: &mut Studio, settings: &Settings) -> Result<f64, Box<dyn Error>> {
+    let [a, b] = of_both_stacks(studio, settings)?;
+    Ok(jump(&a, &b))
+}
+
+/// At exactly 45 degrees, by the stacks of both axes.
+fn of_both_stacks(
+    studio: &mut Studio,
+    settings: &Settings,
+) -> Result<[Vec<[f64; 2]>; 2], Box<dyn Error>> {
+    let mut of_stack = |stack| {
+        let settings = Settings {
+            stack: Some(stack),
+            ..settings.clone()
+        };
+        studio.picture(&camera(45.0), settings)
+    };
+    Ok([of_stack(0)?, of_stack(1)?])
 }
 
 fn splats(sheets: Sheets) -> Settings {
@@ -185,7 +196,7 @@ pub fn stack(preintegrated: bool, smooth_samples: Option<f64>) -> Settings {
 }
 
 /// Shear-warp with so many rays a voxel along each side of its base plane.
-fn warp(preintegrated: bool, rays_per_voxel: f64) -> Settings {
+pub fn warp(preintegrated: bool, rays_per_voxel: f64) -> Settings {
     Settings {
         technique: Technique::ShearWarp,
         preintegrated,

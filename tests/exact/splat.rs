@@ -27,6 +27,21 @@ const PLACE: f64 = 16.0 / (1 << 24) as f64;
 /// Of a number that does not depend on how far away anything is: precision, peak, exponential.
 const NUMBER: f64 = 32.0 / (1 << 24) as f64;
 
+/// Voxels that a ray adds at most: rows and columns within reach of it in each slice.
+const VOXELS: f64 = 13.0 * 49.0;
+
+/// How far off many roundings of numbers up to 1 come to be: each lies anywhere within half of 2^-24, so their sum has a
+/// deviation of 2^-24 sqrt(count / 12), and this is six of it.
+fn of_roundings(count: f64) -> f64 {
+    6.0 * (count / 12.0).sqrt() / f64::from(1 << 24)
+}
+
+/// How far off a sum of splats may be, as a part of it, where its ray is off by [`PLACE`]: all as much to one side as the
+/// steepest flank of a Gaussian makes it, and in the precision of each.
+fn of_splats(voxels_away: f64) -> f64 {
+    PLACE * voxels_away / Splat::default().std * std::f64::consts::FRAC_PI_2.sqrt() + NUMBER
+}
+
 /// How far off a channel of classified sheets may be. What of a splat lies before an end of a sheet is off by 7.5e-8, its
 /// approximation, and 5.2e-7, f32. Errors of splats have no sign in common: with F their integrals, the mean of a sheet of one
 /// voxel is off by twice that, times sqrt(sum of F^2), whose F are a half of their peak in the mean and come to 1 + 2 R h in

@@ -1,8 +1,8 @@
 //! Splats added up along rays: integrals of the splatted field.
 
 use super::{
-    DIMS, DIRECTIONS, NUMBER, PLACE, cubes, function, noise, pictures, ray_of, scene, seen_from,
-    settings, sheared, shots, values,
+    DIMS, DIRECTIONS, VOXELS, cubes, function, noise, of_splats, pictures, ray_of, scene,
+    seen_from, settings, sheared, shots, values,
 };
 use crate::shared::{Worst, volume_of, waves};
 use glam::{DVec3, dvec3};
@@ -27,14 +27,12 @@ fn blob(variance: f64) -> impl Fn(DVec3) -> f64 {
 /// - A place that is off by d deviations: d times the integral of b^2 e^(-b^2 / 2), sqrt(pi / 2).
 /// - Numbers, and the sum of those of a ray: voxels of 13 slices, 7 across each way.
 fn sum_error(wide: f64, voxels_away: f64) -> f64 {
-    let Splat { std, cut_bits, .. } = Splat::default();
-    let bits = f64::from(cut_bits);
+    let bits = f64::from(Splat::default().cut_bits);
     let ripple = (-2.0 * (std::f64::consts::PI * wide).powi(2)).exp();
     let reach = (2.0 * bits * std::f64::consts::LN_2).sqrt();
     let ring = std::f64::consts::SQRT_2 * reach / wide * (-bits).exp2();
-    let place = PLACE * voxels_away / std * std::f64::consts::FRAC_PI_2.sqrt();
-    let sum = 13.0 * 49.0 / f64::from(1 << 24);
-    (1.0 + 2.0 * ripple).powi(2) - 1.0 + ring + place + NUMBER + sum
+    let sum = VOXELS / f64::from(1 << 24);
+    (1.0 + 2.0 * ripple).powi(2) - 1.0 + ring + of_splats(voxels_away) + sum
 }
 
 #[test]
