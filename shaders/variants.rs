@@ -41,7 +41,7 @@ impl Slot {
 /// llvmpipe (`opaque_predicates.rs`).
 pub const CONSTANTS: &[&str] = &[
     "software", "filter", "holes", "lattice", "cuts", "transfer", "end", "mode", "kernel",
-    "operator", "blend", "output", "topology", "layers", "sheets", "take", "grids", "light",
+    "operator", "blend", "output", "topology", "layers", "sheets", "take", "grids", "light", "space",
 ];
 
 /// The name of an import with its slots filled. `{slot=word}` has that word where an entry has no such slot.
@@ -109,6 +109,7 @@ pub const SILENT: &[&str] = &[
     "layers",
     "shared",
     "unlit",
+    "cells",
 ];
 /// Who reads the parameters of slices: the fragments, or the vertices for them (`flat_varyings.rs`).
 const PARAMETERS: Slot = slot("parameters", &["uniform", "planes", "stack"]);
@@ -118,6 +119,8 @@ const CUTS: Slot = constant("cuts", &["cut", "whole"]);
 /// Whether rays leave depth, value and number of samples beside the picture, and what bricks behind go on with: or the
 /// picture alone.
 const LAYERS: Slot = constant("layers", &["layers", "picture"]);
+/// What says where nothing is seen. The word `cells` is left out of names.
+const SPACE: Slot = constant("space", &["cells", "octree", "runs"]);
 const PLANES: Slot = slot("parameters", &["planes"]);
 const STACKED: Slot = slot("parameters", &["stack"]);
 /// The primitives that patches are drawn as.
@@ -158,22 +161,28 @@ const SHEETS: Slot = constant("sheets", &["image", "axis", "each"]);
 pub const ENTRIES: &[(&str, &[Slot])] = &[
     (
         "raycast",
-        &[LINE, MODE, ONE, LATTICE, FILTER, HOLES, TABLE, TAPS, LAYERS],
-    ),
-    (
-        "raycast",
         &[
-            LINE, MODE, ONE, LATTICE, CORNERS, HOLES, STORED, SHARED, CUTS, LAYERS,
+            LINE, MODE, ONE, LATTICE, FILTER, HOLES, TABLE, TAPS, SPACE, LAYERS,
         ],
     ),
     (
         "raycast",
-        &[LINE, MODE, LEAN, RAY, NARROW, HOLES, TABLE, TAPS, LAYERS],
+        &[
+            LINE, MODE, ONE, LATTICE, CORNERS, HOLES, STORED, SHARED, SPACE, CUTS, LAYERS,
+        ],
+    ),
+    (
+        "raycast",
+        &[
+            LINE, MODE, LEAN, RAY, NARROW, HOLES, TABLE, TAPS, SPACE, LAYERS,
+        ],
     ),
     (
         "raycast",
         // With layers in any case: on llvmpipe a lit picture alone was found to take 2 % longer.
-        &[LINE, MODE, LEAN, RAY, CORNERS, HOLES, STORED, SHARED, CUTS],
+        &[
+            LINE, MODE, LEAN, RAY, CORNERS, HOLES, STORED, SHARED, SPACE, CUTS,
+        ],
     ),
     (
         "raycast",
@@ -188,7 +197,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     (
         "raycast",
         &[
-            LINE, MODE, ONE, LATTICE, FETCHED, HOLES, POINTS, TAPS, LAYERS,
+            LINE, MODE, ONE, LATTICE, FETCHED, HOLES, POINTS, TAPS, SPACE, LAYERS,
         ],
     ),
     (

@@ -12,7 +12,7 @@
 #import mask
 #import sample_{inputs}
 #import mode_{mode}
-#import skipped
+#import skipped_{space=cells}
 #import unroll_{inputs}
 
 // `before` is what bricks nearer to the eye have gathered.

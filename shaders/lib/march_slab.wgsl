@@ -12,7 +12,7 @@
 #import mask
 #import sample_slab
 #import mode_{mode}
-#import skipped
+#import skipped_cells
 
 // `before` is what bricks nearer to the eye have gathered.
 fn march(pixel: vec2<f32>, tile: RayTile, before: Accumulator) -> Accumulator {

@@ -3,7 +3,7 @@
 use super::Error;
 use crate::camera::{Camera, HostDepth};
 use crate::gpu::TargetClass;
-use crate::technique::{self, DepthAccess, Mode, Order, Settings};
+use crate::technique::{self, DepthAccess, Mode, Order, Settings, SkipBy};
 use ash::vk;
 
 /// What a renderer is made for: all that pipelines and images depend on.
@@ -129,6 +129,11 @@ impl RendererDesc {
                 settings.adaptive_steps.is_some(),
                 "a picture with adaptive steps",
                 "take the step that it needs, or `EmptySpace::with_alike` and record it",
+            ),
+            (
+                settings.empty_space != SkipBy::Cells,
+                "empty space by an octree or by runs",
+                "macro cells are made anew on the device where data or function change: take them",
             ),
             (
                 settings.smooth,

@@ -4,6 +4,7 @@
 //! using distance maps for empty space skipping", Computational Visual Media 6(1), 2020), one pass along each axis.
 //! Made anew on the device whenever the function changes.
 
+use super::FullVoxels;
 use super::macro_cells::{MacroCells, ring_of};
 use crate::gpu::{
     Bindings, Buffer, ComputePipeline, Error, Gpu, Memory, ParameterRing, Resource, Use, barriers,
@@ -36,6 +37,7 @@ pub struct EmptySpace {
     others: Vec<(Arc<Mapping>, Bindings)>,
     /// Where samples look alike.
     alike: Option<(Arc<Mapping>, Bindings)>,
+    full: Option<FullVoxels>,
 }
 
 /// What maps of all volumes under one transfer function have in common.
@@ -248,7 +250,22 @@ impl EmptySpace {
             mapping,
             others: Vec::new(),
             alike: None,
+            full: None,
         })
+    }
+
+    /// The same for rays that go by a structure of voxels; tiles of rays still go by the cells.
+    #[must_use]
+    pub fn with_full_voxels(self, full: FullVoxels) -> Self {
+        Self {
+            full: Some(full),
+            ..self
+        }
+    }
+
+    /// What these rays read.
+    pub(crate) fn full_voxels(&self) -> Option<&Buffer> {
+        self.full.as_ref().map(FullVoxels::buffer)
     }
 
     /// What techniques read: a byte for each cell, in words (`shaders/lib/distance_map_word.wgsl`). 0: there may be matter.

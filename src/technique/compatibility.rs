@@ -1,6 +1,6 @@
 //! Ways to take samples of their own, and what does not go together with them.
 
-use super::{CutFaces, Error, Lattice, Mode, Settings};
+use super::{CutFaces, Error, Lattice, Mode, Settings, SkipBy, Technique};
 use crate::named::Named;
 use std::fmt;
 
@@ -35,6 +35,7 @@ impl Settings {
         if let Some(error) = self.adaptive_steps {
             self.check_adaptive(error)?;
         }
+        self.check_empty_space()?;
         of_rays(self.cut_faces.is_some(), CUT_FACES)?;
         of_mode(self.cut_faces.is_some(), CUT_FACES)?;
         if let Some(CutFaces::Grey([low, high])) = self.cut_faces {
@@ -90,6 +91,37 @@ impl Settings {
         refuse(self.preintegrated, "samples that are points", PREINTEGRATED)
     }
 
+    /// What rays that go by single voxels do not go with.
+    fn check_empty_space(&self) -> Result<(), Error> {
+        let (mode, technique) = (self.mode, self.technique);
+        let refuse = |is_there, of, found: &dyn fmt::Display| {
+            refuse(is_there && self.goes_by_voxels(), VOXELS, of, found)
+        };
+        let is_other = technique != Technique::Raycast;
+        refuse(is_other, "ray casting", &technique)?;
+        let is_other = mode != Mode::Composite;
+        refuse(is_other, "composite", &format_args!("mode {mode}"))?;
+        let of = "samples that are points";
+        refuse(self.preintegrated, of, &PREINTEGRATED)?;
+        refuse(self.adaptive_steps.is_some(), of, &ADAPTIVE)
+    }
+
+    fn goes_by_voxels(&self) -> bool {
+        self.empty_space != SkipBy::Cells
+    }
+
+    /// Whether a picture has volumes that lie in so many bricks of the device.
+    ///
+    /// # Errors
+    /// [`Error::NotFor`].
+    pub fn check_bricks(&self, bricks: usize) -> Result<(), Error> {
+        let of = "a volume that lies in one texture of the device";
+        let found = format_args!("one in {bricks} bricks");
+        let is_cut = bricks > 1;
+        refuse(is_cut && self.technique.splats(), "splatting", of, found)?;
+        refuse(is_cut && self.goes_by_voxels(), VOXELS, of, found)
+    }
+
     /// What samples at heights of the main axis do not go with.
     fn check_main_axis(&self) -> Result<(), Error> {
         if self.lattice != Lattice::Bresenham {
@@ -129,7 +161,9 @@ impl Settings {
     /// # Errors
     /// [`Error::NotFor`].
     pub(crate) fn check_mixed(&self) -> Result<(), Error> {
-        self.refuse_way("one volume of numbers", "several that are mixed")
+        let (of, found) = ("one volume of numbers", "several that are mixed");
+        refuse(self.goes_by_voxels(), VOXELS, of, found)?;
+        self.refuse_way(of, found)
     }
 
     /// The same for functions of gradients.
@@ -167,6 +201,7 @@ pub(super) fn refuse(
 }
 
 const PREINTEGRATED: &str = "pre-integrated classification";
+const VOXELS: &str = "empty space by an octree or by runs";
 const ADAPTIVE: &str = "sampling by adaptive steps";
 const SMOOTH: &str = "interpolation between slices";
 const CUT_FACES: &str = "an opaque cut face";

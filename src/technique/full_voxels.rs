@@ -60,7 +60,11 @@ pub fn full_before_filtering(volume: &Volume, function: &TransferFunction) -> Vo
 /// Voxels in which a filter that looks as far as `halo` can make a value that `function` shows. As with macro cells, what
 /// stands in the place of missing data counts.
 pub fn full_after_filtering(volume: &Volume, function: &TransferFunction, halo: Halo) -> VoxelSet {
-    let seen = VisibleRanges::new(function);
+    full_of_seen(volume, &VisibleRanges::new(function), halo)
+}
+
+/// The same of values that are seen.
+pub(crate) fn full_of_seen(volume: &Volume, seen: &VisibleRanges, halo: Halo) -> VoxelSet {
     let is_half = matches!(volume.voxels, Voxels::F16(_));
     let is_integer = !volume.voxels.voxel_type().is_float();
     let [slope, intercept] = [volume.rescale.slope, volume.rescale.intercept].map(|n| n as f32);

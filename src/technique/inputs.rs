@@ -4,7 +4,7 @@
 use super::splat::GpuViewPoints;
 use super::{
     Filter, FilterBy, GpuChannel, GradientStorage, Lattice, LightVolume, Mode, Operator, Role,
-    SampleInputs, Settings, Skip,
+    SampleInputs, Settings, Skip, SkipBy,
 };
 use crate::gpu::{Bindings, Error, Gpu, Image, Layout, ParameterRing, Resource};
 use crate::resident::{Brick, FootprintTexels, GpuTransfer, GpuVolume, TextureLayout};
@@ -75,10 +75,16 @@ impl Inputs<'_> {
             Skip::Unseen(cells, empty) => [empty.distance_map(), cells.ranges()],
             Skip::Exceeded(cells) => [self.ring.buffer(), cells.ranges()],
         };
+        let full = match self.skip {
+            Skip::Unseen(_, empty) => empty.full_voxels(),
+            Skip::Nothing | Skip::Exceeded(_) => None,
+        };
         let corners = self.volume.corners().map(FootprintTexels::image);
         given.extend(corners.map(|corners| ("corners", Resource::read(corners))));
         given.push(("distance_map", Resource::Storage(distance_map)));
         given.push(("cell_ranges", Resource::Storage(ranges)));
+        let full = full.unwrap_or(self.ring.buffer());
+        given.push(("full_voxels", Resource::Storage(full)));
         given.extend_from_slice(outputs);
         if !outputs.iter().any(|(name, _)| *name == "host_depth") {
             given.push(("host_depth", Resource::sampled(self.volume.no_depth())));
@@ -146,6 +152,8 @@ pub struct ShaderVariant {
     pub take: SampleKind,
     /// Steps adapt to what is there.
     pub is_adaptive: bool,
+    /// What says where nothing is seen.
+    pub skip_by: SkipBy,
     /// No clip planes and no cut faces, and all rays begin at the same place of their pixels: for such pictures alone.
     pub is_whole: bool,
     /// Whether volumes that are mixed lie on grids of their own.
@@ -237,6 +245,7 @@ impl ShaderVariant {
                 None => "table",
             },
             is_adaptive: settings.adaptive_steps.is_some(),
+            skip_by: settings.empty_space,
             is_whole: false,
             has_own_grids: parts
                 .iter()

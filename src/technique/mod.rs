@@ -97,7 +97,7 @@ pub use ray_tiles::{RayBindings, RayTiles};
 pub use recording::{Recording, parameter_ring};
 pub use shading::{Light, LightSpace, Shading};
 pub use shear_warp::Intermediate;
-pub use skip::{Skip, Skippable};
+pub use skip::{Skip, SkipBy, Skippable};
 pub use slicer::{DepthAccess, Slicer};
 
 use crate::volume::{Spline, kernel::Kernel};
@@ -253,6 +253,8 @@ pub struct Settings {
     pub termination: f32,
     /// Whether samples that cannot matter may be left out. The picture is the same without.
     pub skip: bool,
+    /// What says where they are. The picture is the same by each.
+    pub empty_space: SkipBy,
     /// In which numbers colours are blended.
     pub color_space: crate::picture::ColorSpace,
     /// Voxel space box to keep, min and max; fractions allowed. `None`: all of it.
@@ -315,6 +317,7 @@ impl Default for Settings {
             uneven_rays: false,
             termination: 0.0,
             skip: true,
+            empty_space: SkipBy::default(),
             color_space: crate::picture::ColorSpace::default(),
             crop: None,
             clip_planes: Vec::new(),

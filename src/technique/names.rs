@@ -1,6 +1,6 @@
 //! The names of what settings choose.
 
-use super::{Filter, FilterBy, Lattice, Order};
+use super::{Filter, FilterBy, Lattice, Order, SkipBy};
 use crate::named::named;
 
 named!(Filter {
@@ -24,6 +24,12 @@ named!(Lattice {
     Planes "planes" "",
     Jitter "jitter" "",
     Bresenham "bresenham" "",
+});
+
+named!(SkipBy {
+    Cells "cells" "",
+    Octree "octree" "",
+    Runs "runs" "",
 });
 
 named!(Order {

@@ -27,6 +27,18 @@ pub enum Skip<'a> {
     Exceeded(&'a MacroCells),
 }
 
+/// What says where rays need not look.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum SkipBy {
+    /// Macro cells, and how far away from each the next one with matter is.
+    #[default]
+    Cells,
+    /// The octree of the voxels that matter ([`EmptySpace::with_full_voxels`]), of composites of one volume by ray casting.
+    Octree,
+    /// The runs of these, for the same pictures.
+    Runs,
+}
+
 /// What can be left out of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Skippable {

@@ -268,7 +268,7 @@ impl Animate {
         note.iter().for_each(|note| progress.note(note));
         let mut shots = plan.film.shots(scene, *depth, header, &grid)?;
         for shot in &mut shots {
-            shot.settings.skip = !self.no_skip;
+            shot.settings.skip &= !self.no_skip;
         }
         let kept = Kept::new(self.save_scene.is_some());
         let drawing = Drawing {
@@ -346,7 +346,7 @@ impl Animate {
         scene.classification.context = scene.is_auto().then(|| context(header));
         let mut shots = film.shots(&scene, depth, header, &shots::grid(&scene, header)?)?;
         for shot in &mut shots {
-            shot.settings.skip = !self.no_skip;
+            shot.settings.skip &= !self.no_skip;
         }
         scene_inputs::check(&scene, &shots[0].settings)?;
         check::several(&scene, header, &shots)?;

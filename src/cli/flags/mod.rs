@@ -12,6 +12,7 @@ mod component;
 mod cuts;
 mod denoise;
 mod devices;
+mod empty_space;
 mod gradient_filter;
 mod gradients;
 mod inlined;

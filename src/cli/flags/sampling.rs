@@ -3,6 +3,7 @@
 use super::{
     Error, Numbers,
     cuts::{ClipBox, CutFacesWord},
+    empty_space::EmptySpaceWord,
     intermediate::IntermediateWord,
     positive,
     sampling_numbers::{clip_planes, crop_box, rays_per_side, samples_per_voxel},
@@ -87,6 +88,10 @@ pub struct SamplingFlags {
     #[arg(long, value_name = "ERROR", value_parser = positive)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub adaptive_steps: Option<f64>,
+    /// Rays in composite: what says where nothing is seen; the picture is the same [default: cells]
+    #[arg(long, value_name = "WAY")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub empty_space: Option<EmptySpaceWord>,
     /// Rays per pixel, a square number [default: 1]
     #[arg(long, value_name = "N")]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -163,7 +168,8 @@ const TERMINATION_DISPLAY: f32 = 1.0 / 512.0;
 const CUT_BITS_EIGHT: u32 = 8;
 /// Which ways to sample go with which technique.
 const WAYS: &str = "--preintegrated is for --mode composite, --smooth for that with --technique slices-2d, --jitter for \
-                    --technique raycast, and --cut-faces and --adaptive-steps for that with --mode composite";
+                    --technique raycast, and --cut-faces, --adaptive-steps and --empty-space octree and runs for that with --mode \
+                    composite";
 /// What samples along main axes go with.
 const MAIN_AXIS: &str = "--lattice bresenham is for --technique raycast and --mode composite, mip, minip, average and xray, \
                          without --preintegrated, --adaptive-steps and --cut-faces";
@@ -218,7 +224,8 @@ impl SamplingFlags {
             rays_per_side: rays_per_side(self.aa.unwrap_or(1))?,
             uneven_rays: self.aa_uneven,
             termination,
-            skip: true,
+            skip: self.empty_space.unwrap_or_default().skips(),
+            empty_space: self.empty_space.unwrap_or_default().skip_by(),
             color_space,
             crop: self.crop.map(crop_box).transpose()?,
             clip_planes: self.clip_planes()?,

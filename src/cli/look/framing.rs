@@ -102,7 +102,7 @@ impl<'a> Framing<'a> {
 
     fn view_of(&self, scene: SceneFlags) -> Result<View, Error> {
         let mut settings = scene.settings(self.depth)?;
-        settings.skip = self.skip;
+        settings.skip &= self.skip;
         let camera = self
             .shown
             .camera(&scene, self.extent_pixels, &mut settings)?;

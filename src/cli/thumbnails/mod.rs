@@ -111,7 +111,7 @@ impl Thumbnails {
             BitDepth::Sixteen => Depth::More,
         };
         let mut settings = scene.settings(depth)?;
-        settings.skip = !self.no_skip;
+        settings.skip &= !self.no_skip;
         scene.classification.check()?;
         scene.annotate.check()?;
         scene_inputs::check(&scene, &settings)?;

@@ -7,12 +7,15 @@ use crate::offscreen::keyed::Keyed;
 use crate::offscreen::stream::if_it_fits;
 use crate::offscreen::time_slices::Work;
 use crate::offscreen::upload::fill;
-use crate::resident::{EmptySpace, FootprintTexels, GpuVolume, Halo, MacroCells};
+use crate::resident::{EmptySpace, FootprintTexels, FullVoxels, GpuVolume, Halo, MacroCells};
 use crate::scene::{Beside, Scene};
 use crate::technique::cost::ms_of_fetches;
-use crate::technique::{GpuChannel, Mode, PatchRoom, Patches, Role, SampleInputs, Skip, Skippable};
+use crate::technique::full_voxels::full_of_seen;
+use crate::technique::{
+    GpuChannel, Mode, PatchRoom, Patches, Role, SampleInputs, Skip, SkipBy, Skippable,
+};
 use crate::transfer::{HomogeneousRanges, TransferFunction, VisibleRanges};
-use crate::volume::Volume;
+use crate::volume::{Coefficients, Volume};
 use std::sync::Arc;
 
 /// What is known of the volumes that have been drawn.
@@ -24,8 +27,12 @@ pub struct Skipped {
     wanted: Option<Skippable>,
 }
 
-/// What functions show, by the numbers of their volumes, and between which values that looks alike.
-type Shown = (Vec<(usize, VisibleRanges)>, Option<HomogeneousRanges>);
+/// What functions show, by the numbers of their volumes, between which values that looks alike, and what says where it is.
+type Shown = (
+    Vec<(usize, VisibleRanges)>,
+    Option<HomogeneousRanges>,
+    SkipBy,
+);
 
 /// What macro cells are of: which of the volumes, in which form, for which filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -163,8 +170,8 @@ impl Renderer<'_> {
         };
         if !seen.is_empty() {
             let mut empty = std::mem::take(&mut self.skipped.empty);
-            let key = (of, (seen, alike));
-            let found = empty.of(key, |(_, shown)| self.make_empty_space(shown));
+            let key = (of, (seen, alike, scene.settings.empty_space));
+            let found = empty.of(key, |(_, shown)| self.make_empty_space(scene, shown, halo));
             let is_there = found.map(|found| found.is_some());
             self.skipped.empty = empty;
             if !is_there? {
@@ -202,7 +209,12 @@ impl Renderer<'_> {
     }
 
     /// What is empty of the cells that have been made; `None` where there is no room for it.
-    fn make_empty_space(&mut self, (seen, alike): &Shown) -> Result<Option<EmptySpace>, Error> {
+    fn make_empty_space(
+        &mut self,
+        scene: &Scene,
+        (seen, alike, skip_by): &Shown,
+        halo: Halo,
+    ) -> Result<Option<EmptySpace>, Error> {
         let cells = self.skipped.cells.get().and_then(Option::as_ref);
         let cells = cells.expect("made before");
         let several: Vec<_> = seen.iter().map(|(n, seen)| (&cells[*n], seen)).collect();
@@ -213,6 +225,13 @@ impl Renderer<'_> {
         };
         let Some(made) = if_it_fits(made)? else {
             return Ok(None);
+        };
+        let made = match self.full_voxels(scene, &seen[0].1, *skip_by, halo) {
+            None => made,
+            Some(full) => match if_it_fits(full)? {
+                Some(full) => made.with_full_voxels(full),
+                None => return Ok(None),
+            },
         };
         // Most cells look at some ten others.
         let expected_ms = ms_of_fetches(self.device.gpu(), cells[0].cell_count() as f64);
@@ -227,16 +246,34 @@ impl Renderer<'_> {
         Ok(Some(made))
     }
 
+    /// The voxels of the one volume in which something may be seen; `None` where cells are enough.
+    fn full_voxels(
+        &self,
+        scene: &Scene,
+        seen: &VisibleRanges,
+        skip_by: SkipBy,
+        halo: Halo,
+    ) -> Option<Result<FullVoxels, gpu::Error>> {
+        let made = match skip_by {
+            SkipBy::Cells => return None,
+            SkipBy::Octree => FullVoxels::octree,
+            SkipBy::Runs => FullVoxels::runs,
+        };
+        let halo = of_role(halo, parts_of(&self.resident, self.shown, scene)[0].role);
+        // What filters mix.
+        let volume = self.volumes[self.shown];
+        let spline = scene.settings.filter.spline();
+        let read = spline.map(|spline| Coefficients::new(volume, spline, [true; 3]));
+        let read = read.as_ref().map_or(volume, Coefficients::volume);
+        Some(made(self.device.gpu(), &full_of_seen(read, seen, halo)))
+    }
+
     /// Objects for the cells of volume number `number` of the picture.
     fn cells_of(&self, scene: &Scene, number: usize, halo: Halo) -> Result<MacroCells, gpu::Error> {
         let parts = parts_of(&self.resident, self.shown, scene);
         let GpuChannel { volume, role } = parts[number];
         let gpu = self.device.gpu();
-        // Nothing lies between two labels.
-        let halo = Halo {
-            is_mixed: halo.is_mixed && role != Role::Labels,
-            ..halo
-        };
+        let halo = of_role(halo, role);
         let voxels = self.volumes[self.shown + number];
         if volume.grid() != parts[0].volume.grid() {
             return MacroCells::of_channel(gpu, parts[0].volume, volume, halo, voxels);
@@ -245,6 +282,14 @@ impl Renderer<'_> {
             true => MacroCells::of_voxels(gpu, volume, halo, voxels),
             false => MacroCells::new(gpu, volume, halo),
         }
+    }
+}
+
+/// Nothing lies between two labels.
+fn of_role(halo: Halo, role: Role) -> Halo {
+    Halo {
+        is_mixed: halo.is_mixed && role != Role::Labels,
+        ..halo
     }
 }
 

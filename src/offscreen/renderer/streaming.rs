@@ -17,7 +17,7 @@ use crate::resident::Halo;
 use crate::scene::Scene;
 use crate::technique::cost::{fetches_of_picture, ms_of_fetches};
 use crate::technique::gather::{BrickPass, LAYERS, PICTURE};
-use crate::technique::{GpuChannel, InPixel, Inputs, Mode, Skippable, View};
+use crate::technique::{GpuChannel, InPixel, Inputs, Mode, SkipBy, Skippable, View};
 use crate::volume::Volume;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -70,6 +70,7 @@ impl<'v> Renderer<'v> {
             () if settings.filter.spline().is_some() => "a filter that reads coefficients",
             () if settings.wants_light_volume() => "occlusion or shadows",
             () if settings.adaptive_steps.is_some() => "adaptive steps",
+            () if settings.empty_space != SkipBy::Cells => "empty space by an octree or by runs",
             () if settings
                 .gradient_source_beside(crate::resident::TextureLayout::Texture3d)
                 .is_some()

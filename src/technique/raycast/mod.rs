@@ -6,7 +6,7 @@ pub mod reference;
 use super::gather::rays;
 use super::ray_tiles::{Nothing, TilePass};
 use super::registry::TechniqueDesc;
-use super::{Inputs, Mode, RayBindings, RayTiles, SampleInputs, SampleKind, ShaderVariant};
+use super::{Inputs, Mode, RayBindings, RayTiles, SampleInputs, SampleKind, ShaderVariant, SkipBy};
 use crate::gpu::{Error, Gpu, Image, Resource, Tile};
 use crate::resident::TextureLayout;
 use crate::shaders::shader;
@@ -59,6 +59,7 @@ impl Raycast {
             mix,
             take,
             is_adaptive,
+            skip_by,
             ..
         } = variant;
         // Kernels, planes and exact control points have the general variant alone.
@@ -68,6 +69,11 @@ impl Raycast {
             && !matches!(*filter, "kernel" | "spline");
         let mix = if has_lean { *mix } else { mix.general() };
         let mode = of.shader_key();
+        // Where it is not refused.
+        let space = match skip_by {
+            SkipBy::Cells => String::new(),
+            _ => format!(".{skip_by}"),
+        };
         let name = match take {
             _ if of == Mode::Iso && mix == SampleInputs::Channels => {
                 format!("isosurface.volume.{filter}.{holes}")
@@ -81,7 +87,7 @@ impl Raycast {
                 format!("raycast.composite.adaptive.{lattice}.{filter}.{holes}.{transfer}")
             }
             _ => format!(
-                "raycast.{mode}{}.{lattice}.{filter}.{holes}.{transfer}",
+                "raycast.{mode}{}.{lattice}.{filter}.{holes}.{transfer}{space}",
                 mix.word()
             ),
         };

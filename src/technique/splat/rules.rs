@@ -180,21 +180,6 @@ impl Settings {
             false => Ok(()),
         }
     }
-
-    /// Whether a picture has volumes that lie in so many bricks of the device.
-    ///
-    /// # Errors
-    /// [`Error::NotFor`].
-    pub fn check_bricks(&self, bricks: usize) -> Result<(), Error> {
-        match self.technique == Technique::Splat && bricks > 1 {
-            true => Err(Error::NotFor {
-                wanted: "splatting",
-                of: "a volume that lies in one texture of the device",
-                found: format!("one in {bricks} bricks"),
-            }),
-            false => Ok(()),
-        }
-    }
 }
 
 #[cfg(test)]
