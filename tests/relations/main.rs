@@ -17,6 +17,7 @@ mod projection;
 mod skipping;
 mod skipping_beside;
 mod skipping_slices;
+mod skipping_voxels;
 mod streaming;
 mod streaming_skipped;
 mod symmetry;
