@@ -41,7 +41,8 @@ impl Slot {
 /// llvmpipe (`opaque_predicates.rs`).
 pub const CONSTANTS: &[&str] = &[
     "software", "filter", "holes", "lattice", "cuts", "transfer", "end", "mode", "kernel",
-    "operator", "blend", "output", "topology", "layers", "sheets", "take", "grids", "light", "space",
+    "operator", "blend", "output", "topology", "layers", "sheets", "take", "grids", "light",
+    "space",
 ];
 
 /// The name of an import with its slots filled. `{slot=word}` has that word where an entry has no such slot.
