@@ -1,5 +1,6 @@
 //! What a picture shows: a volume and how it is classified, and what it is seen together with.
 
+mod beside;
 mod channels;
 mod check;
 mod colors;
@@ -17,7 +18,6 @@ pub use streamed::{is_wanted as wants_stream, open as open_stream};
 use super::{
     Error,
     flags::{ChannelWord, Classification, ClassificationFlags, Plan, SceneFlags, Subject, context},
-    labels,
     load::open_first,
     look::{Seen, base_of},
     memory::{self, DeviceRoom},
@@ -232,82 +232,7 @@ impl SceneInputs {
         if scene.sampling.preclassified {
             return preclassified::classified(shown, settings.color_space);
         }
-        if scene.opacity.are_given() {
-            let by = reader.opacity(&shown.volume.grid(), shown.height_factor)?;
-            let Others::Channels(others) = &mut shown.others else {
-                unreachable!("one number a voxel is no colour");
-            };
-            if let Classification::Function(function) = &shown.classification
-                && function.uses_gradient()
-            {
-                return Err(Error::usage(
-                    format!(
-                        "{} makes a volume opaque by other numbers, and widgets and gradient opacity are for one volume alone",
-                        scene.opacity.word()
-                    ),
-                    "take a function of the value alone",
-                ));
-            }
-            others.push(by);
-        }
-        if !scene.with.with.is_empty() {
-            let with = reader.with(&shown.volume.grid(), shown.height_factor)?;
-            shown.join(with)?;
-            if settings.mode == Mode::Composite && says_nothing(&scene.classification)? {
-                fade(&mut shown.classification);
-                progress.note(
-                    "the volume is drawn faint, so that the others are seen inside; a --preset or --tf is drawn as it is",
-                );
-            }
-        }
-        if scene.labels.labels.is_some() {
-            let Others::Channels(others) = &mut shown.others else {
-                return Err(Error::usage(
-                    "--labels lies over numbers, and this volume is one of colours",
-                    "take one of them: --component 0",
-                ));
-            };
-            if let Classification::Function(function) = &shown.classification
-                && function.uses_gradient()
-            {
-                return Err(Error::usage(
-                    "--labels lies over a volume, and widgets and gradient opacity are for one volume alone",
-                    "leave out --labels, or take a function of the value alone",
-                ));
-            }
-            let grid = shown.volume.grid();
-            let map = labels::read(scene, &grid, shown.height_factor, progress)?;
-            let is_drawn = map.function.opacity.iter().any(|point| point.opacity > 0.0);
-            let is_plain = says_nothing(&scene.classification)? && !scene.opacity.are_given();
-            if is_drawn && is_plain {
-                fade(&mut shown.classification);
-                progress.note(
-                    "the volume is drawn faint, so that labels inside are seen; a --preset or --tf is drawn as it is",
-                );
-            }
-            others.push(map);
-        }
-        Ok(shown)
-    }
-
-    /// Puts other volumes of numbers beside those that are there.
-    fn join(&mut self, with: Vec<Other>) -> Result<(), Error> {
-        let Others::Channels(others) = &mut self.others else {
-            return Err(Error::usage(
-                "--with joins volumes of numbers, and this volume is one of colours",
-                "take one of them: --component 0",
-            ));
-        };
-        if let Classification::Function(function) = &self.classification
-            && function.uses_gradient()
-        {
-            return Err(Error::usage(
-                "--with: widgets and gradient opacity are for one volume alone, and several are drawn",
-                "take a function of the value alone",
-            ));
-        }
-        others.extend(with);
-        Ok(())
+        shown.with_beside(&reader)
     }
 
     /// True where the file says how its axes lie, in a patient or on the Earth.
