@@ -35,7 +35,7 @@ pub fn several(scene: &SceneFlags, header: &Header, shots: &[FilmFrame]) -> Resu
     let several = scene_inputs::shows_several(scene, header)?;
     if !is_still && (several || scene.labels.label_tf.is_some()) {
         return Err(Error::usage(
-            "several times are shown of one number a voxel, without colours, several channels, --labels and --label-tf",
+            "several times are shown of one number a voxel, without colours, several channels, --with, --labels and --label-tf",
             "--time N takes one time, --component N one number",
         ));
     }
