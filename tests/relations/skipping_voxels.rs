@@ -172,7 +172,8 @@ fn pictures_that_do_not_go_by_single_voxels_are_refused_by_name() {
         empty_space: SkipBy::Octree,
         ..Settings::default()
     };
-    let changes: [(&str, fn(&mut Settings)); 4] = [
+    type Change = fn(&mut Settings);
+    let changes: [(&str, Change); 4] = [
         ("ray casting", |s| s.technique = Technique::Slices3d),
         ("composite", |s| s.mode = Mode::Mip),
         ("samples that are points", |s| s.preintegrated = true),
