@@ -58,7 +58,7 @@ fn what_cannot_be_classified_before_it_is_interpolated_says_so() {
     folder.file("widgets.json", contour);
     for (words, said) in [
         ("--mode mip", "--mode composite"),
-        ("--shading phong", "light"),
+        ("--with phantom:head,n=8", "--with"),
         ("--labels l.nrrd", "--labels"),
         ("--filter cubic", "--filter cubic"),
         ("--tf widgets.json", "widgets"),

@@ -158,6 +158,10 @@ fn what_cannot_be_joined_is_refused_with_a_reason() {
             "--with inner.nrrd,component=",
         ),
         ("outer.nrrd --with nothing.nrrd", "nothing.nrrd"),
+        (
+            "outer.nrrd --with inner.nrrd --preclassified",
+            "--with lies beside it",
+        ),
         ("outer.nrrd --with inner.nrrd --mode xray", "window of each"),
         (
             "outer.nrrd --with inner.nrrd --preset boundaries",

@@ -184,7 +184,7 @@ impl FromStr for WithWord {
     /// The file ends where the first key begins: its name may hold commas. So may the value of `colormap`.
     fn from_str(text: &str) -> Result<Self, String> {
         let mut parts: Vec<String> = Vec::new();
-        for (number, piece) in text.split(',').enumerate() {
+        for piece in text.split(',') {
             let key = piece.split_once('=').map(|(key, _)| key);
             let is_key = key.is_some_and(|key| key.bytes().all(|c| c.is_ascii_lowercase()));
             // Built-in volumes have keys of their own.
@@ -196,8 +196,7 @@ impl FromStr for WithWord {
                     last.push(',');
                     last.push_str(piece);
                 }
-                _ if number == 0 || is_key => parts.push(piece.to_owned()),
-                _ => unreachable!("the first piece has begun a part"),
+                _ => parts.push(piece.to_owned()),
             }
         }
         let mut parts = parts.into_iter();

@@ -25,11 +25,6 @@ pub fn check(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
     let several = scene.channels.are_given() || scene.input.component == Some(Component::All);
     if settings.mode != Mode::Composite {
         refused("this is another mode", "leave out --mode")
-    } else if settings.shading.is_some() {
-        refused(
-            "light falls on values",
-            "leave out --shading: materials have no gradient",
-        )
     } else if settings.ambient_occlusion.is_some() {
         refused("occlusion is of values", "leave out --ambient-occlusion")
     } else if matches!(settings.cut_faces, Some(CutFaces::Grey(_))) {
@@ -39,6 +34,8 @@ pub fn check(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
         )
     } else if scene.labels.labels.is_some() {
         refused("--labels lies over it", "leave out --labels")
+    } else if !scene.with.with.is_empty() {
+        refused("--with lies beside it", "leave out --with")
     } else if scene.opacity.are_given() {
         refused("other numbers make it opaque", "leave out one of them")
     } else if settings.smooth || settings.lattice == Lattice::Jitter {
