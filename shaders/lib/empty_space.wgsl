@@ -58,11 +58,12 @@ fn cell_index(cell: vec3<i32>) -> u32 {
 
 // The first sample that lies outside of the distance around the cell of sample k.
 fn first_sample_beyond(line: SampleLine, k: i32, cell: vec3<i32>, distance: i32) -> i32 {
-    return first_sample_outside(line, k, vec3<f32>(cell + 1 - distance), vec3<f32>(cell + distance));
+    let ahead = select(vec3(1 - distance), vec3(distance), line.step > vec3(0.0));
+    return first_sample_past(line, k, vec3<f32>(cell + ahead));
 }
 
-// The same of a box around sample k, in cells.
-fn first_sample_outside(line: SampleLine, k: i32, low: vec3<f32>, high: vec3<f32>) -> i32 {
-    let leaves = (select(low, high, line.step > vec3(0.0)) - line.at) * line.steps_per_cell;
+// The first sample past the planes, in cells, of which a ray at sample k meets one along each axis.
+fn first_sample_past(line: SampleLine, k: i32, planes: vec3<f32>) -> i32 {
+    let leaves = (planes - line.at) * line.steps_per_cell;
     return max(k + 1, i32(ceil(min(leaves.x, min(leaves.y, leaves.z)))));
 }

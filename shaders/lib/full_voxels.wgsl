@@ -25,6 +25,6 @@ fn voxel_of_sample(line: SampleLine, k: i32) -> vec3<u32> {
 
 // The first sample that lies outside of a box of voxels around sample k, `end` beside it.
 fn first_sample_beyond_box(line: SampleLine, k: i32, first: vec3<u32>, end: vec3<u32>) -> i32 {
-    let size = f32(CELL_VOXELS);
-    return first_sample_outside(line, k, vec3<f32>(first) / size, vec3<f32>(end) / size);
+    let planes = select(first, end, line.step > vec3(0.0));
+    return first_sample_past(line, k, vec3<f32>(planes) / f32(CELL_VOXELS));
 }

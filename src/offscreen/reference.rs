@@ -197,8 +197,8 @@ impl<'a, R: Real> ReferenceRays<'a, R> {
         let Recording {
             mut frame, slices, ..
         } = view.on_cpu()?;
-        let grids: Vec<_> = scene.volumes().iter().map(|volume| volume.grid()).collect();
-        let ChannelGrids { from_voxel, dims } = ChannelGrids::new(&grids);
+        let grids = scene.volumes().into_iter().map(Volume::grid);
+        let ChannelGrids { from_voxel, dims } = ChannelGrids::new(&scene.volume.grid(), grids);
         (frame.channel_from_voxel, frame.channel_dims) = (from_voxel, dims);
         let ranges = scene.volumes().into_iter().map(|volume| volume.value_range);
         frame.channel_gradient_scale = view.gradient_scales(ranges.zip(scene.roles()));

@@ -12,7 +12,7 @@
 //! up their emission and their extinction (Max 1995). It does not depend on the order of channels.
 
 use super::Error;
-use super::own_grid::{ChannelGrids, are_own};
+use super::own_grid::ChannelGrids;
 use crate::color::decode_srgb;
 use crate::picture::ColorSpace;
 use crate::real::Real;
@@ -135,18 +135,20 @@ pub(super) fn set_channels(
     fn cells<'a>(part: &GpuChannel<'a>) -> impl Iterator<Item = Cell> + 'a {
         part.volume.bricks().iter().map(|brick| brick.cell)
     }
-    let grids: Vec<_> = parts.iter().map(|part| *part.volume.grid()).collect();
+    let first = *parts[0].volume.grid();
+    let grids = parts.iter().map(|part| *part.volume.grid());
+    let has_own_grids = grids.clone().any(|grid| grid != first);
     let is_whole = |part: &GpuChannel| part.volume.bricks().len() == 1;
-    if are_own(&grids) && !parts.iter().all(is_whole) {
+    if has_own_grids && !parts.iter().all(is_whole) {
         return Err(Error::OwnGridsInBricks);
     }
-    let ChannelGrids { from_voxel, dims } = ChannelGrids::new(&grids);
+    let ChannelGrids { from_voxel, dims } = ChannelGrids::new(&first, grids);
     (fields.channel_from_voxel, fields.channel_dims) = (from_voxel, dims);
     let is_classified = parts.iter().any(|part| part.role == Role::Material);
     fields.colors_are_classified = is_classified.into();
     for (c, part) in parts.iter().enumerate() {
         let volume = part.volume;
-        if !are_own(&grids) && cells(part).ne(cells(&parts[0])) {
+        if !has_own_grids && cells(part).ne(cells(&parts[0])) {
             return Err(Error::OtherGrid);
         }
         let coding = volume.texel().coding;

@@ -22,12 +22,13 @@ pub struct ChannelGrids {
 }
 
 impl ChannelGrids {
-    /// Those of these grids, that of the volume first; at most [`MAX_CHANNELS`].
-    pub fn new(grids: &[Grid]) -> Self {
+    /// Those of these grids beside the `first`, which is one of them; at most [`MAX_CHANNELS`].
+    pub fn new(first: &Grid, grids: impl IntoIterator<Item = Grid>) -> Self {
         let mut made = Self::default();
-        for (c, grid) in grids.iter().enumerate().take(MAX_CHANNELS as usize) {
-            let a = grid.world_from_voxel.inverse() * grids[0].world_from_voxel;
-            let is_first = grid.world_from_voxel == grids[0].world_from_voxel;
+        let grids = grids.into_iter().enumerate();
+        for (c, grid) in grids.take(MAX_CHANNELS as usize) {
+            let a = grid.world_from_voxel.inverse() * first.world_from_voxel;
+            let is_first = grid.world_from_voxel == first.world_from_voxel;
             let a = if is_first {
                 glam::DAffine3::IDENTITY
             } else {
@@ -35,15 +36,10 @@ impl ChannelGrids {
             };
             made.from_voxel[3 * c..3 * c + 3].copy_from_slice(&affine_rows(&a));
             let [x, y, z] = grid.dims.map(|n| n as f32);
-            made.dims[c] = [x, y, z, f32::from(u8::from(*grid != grids[0]))];
+            made.dims[c] = [x, y, z, f32::from(u8::from(grid != *first))];
         }
         made
     }
-}
-
-/// Whether some of the grids is not the first.
-pub fn are_own(grids: &[Grid]) -> bool {
-    grids.iter().any(|grid| *grid != grids[0])
 }
 
 /// Where a position in voxels of the volume lies in those of a channel; `None` outside of its box.
