@@ -19,7 +19,7 @@ fn main(
         discard;
     }
     let interval = visible_interval(domain_interval(world, voxel), world, position.xy);
-    let slab = stack_slab(voxel, slope, interval, plane);
+    let slab = stack_slab(world, voxel, slope, interval, plane);
     if !slab.has_data {
         discard;
     }

@@ -36,5 +36,6 @@ fn main(
     if !is_in_brick(place) || !has_data_between(level, place) {
         discard;
     }
-    return blend_source(value_between(level, place), 1.0 / (abs(slope) * frame.planes_per_slice));
+    let sample = Sample(value_between(level, place), place, world.direction);
+    return blend_source(sample, 1.0 / (abs(slope) * frame.planes_per_slice));
 }

@@ -22,7 +22,8 @@ fn main(
     let interval = visible_interval(domain_interval(world, voxel), world, position.xy);
     let slab = plane_slab(world, interval, plane);
     let t = 0.5 * (slab.front + slab.back);
-    if !(slab.length > 0.0) || !is_in_brick(voxel.origin + t * voxel.direction) {
+    let middle = voxel.origin + t * voxel.direction;
+    if !(slab.length > 0.0) || !is_in_brick(middle) {
         discard;
     }
     let front = end_at(voxel.origin + slab.front * voxel.direction);
@@ -30,5 +31,5 @@ fn main(
     if !front.is_valid || !back.is_valid {
         discard;
     }
-    return blend_source(Sample(front.value, back.value), slab.length);
+    return blend_source(Sample(front.value, back.value, middle, world.direction), slab.length);
 }

@@ -77,6 +77,9 @@ const STORED: Slot = slot("transfer", &["stored"]);
 const POINTS: Slot = slot("transfer", &["points"]);
 /// One number at both ends of a segment. The word is left out of names.
 const SLAB: Slot = slot("inputs", &["slab"]);
+/// One number, and where it was taken between the slices of a stack. The words are left out of names.
+const BETWEEN: Slot = slot("inputs", &["between"]);
+const STACK_PLACE: Slot = slot("place", &["between"]);
 /// What a compute pass walks along: a line of samples, one of slabs, or the slices of a stack, by points and by slabs.
 const LINE: Slot = slot("walk", &["march"]);
 const SLABS: Slot = slot("walk", &["march_slab"]);
@@ -111,6 +114,7 @@ pub const SILENT: &[&str] = &[
     "shared",
     "unlit",
     "cells",
+    "between",
 ];
 /// Who reads the parameters of slices: the fragments, or the vertices for them (`flat_varyings.rs`).
 const PARAMETERS: Slot = slot("parameters", &["uniform", "planes", "stack"]);
@@ -142,7 +146,7 @@ const ADAPTIVE: Slot = slot("inputs", &["adaptive"]);
 const WHOLE: Slot = slot("holes", &["none"]);
 /// Whether volumes that are mixed lie on the grid of the first, or on grids of their own.
 const GRIDS: Slot = constant("grids", &["shared", "own"]);
-/// Whether light falls on volumes that are mixed.
+/// Whether light falls on volumes that are mixed, on slabs, and on samples between slices.
 const LIGHT: Slot = constant("light", &["unlit", "lit"]);
 const MIXED: Slot = slot("inputs", &["channels", "colors"]);
 const MODE: Slot = slot("mode", &["composite"]);
@@ -341,9 +345,29 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
             SLAB_LATTICE,
             NARROW,
             HOLES,
+            TAPS,
+            LIGHT,
         ],
     ),
-    ("slices_3d_slab", &[BLEND, SLAB, END, NARROW, HOLES]),
+    (
+        "raycast_slab",
+        &[
+            SLABS,
+            slot("mode", &["composite"]),
+            SLAB,
+            SLAB_LATTICE,
+            CORNERS,
+            HOLES,
+            STORED,
+            SHARED,
+            LIGHT,
+            CUTS,
+        ],
+    ),
+    (
+        "slices_3d_slab",
+        &[BLEND, SLAB, END, NARROW, HOLES, TAPS, LIGHT],
+    ),
     (
         "slices_3d_slab",
         &[
@@ -354,7 +378,19 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
             slot("holes", &["none"]),
         ],
     ),
-    ("slices_2d_slab", &[BLEND, SLAB, END, NARROW, HOLES]),
+    (
+        "slices_2d_slab",
+        &[
+            BLEND,
+            SLAB,
+            END,
+            NARROW,
+            HOLES,
+            TAPS,
+            LIGHT,
+            STACK_PLACE,
+        ],
+    ),
     (
         "slices_2d_slab",
         &[
@@ -369,17 +405,20 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         "slices_2d_smooth",
         &[
             slot("blend", &["composite"]),
-            SCALAR,
+            BETWEEN,
             NARROW,
             HOLES,
             TRANSFER,
+            TAPS,
+            LIGHT,
+            STACK_PLACE,
         ],
     ),
     (
         "slices_2d_smooth",
         &[
             slot("blend", &["count"]),
-            SCALAR,
+            BETWEEN,
             slot("filter", &["nearest"]),
             slot("holes", &["none"]),
         ],

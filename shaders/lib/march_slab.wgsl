@@ -46,7 +46,8 @@ fn march(pixel: vec2<f32>, tile: RayTile, before: Accumulator) -> Accumulator {
             slab = Slab(interval.x, interval.x, FACE_LENGTH);
         }
         let t = 0.5 * (slab.front + slab.back);
-        if slab.length <= 0.0 || !is_in_brick(voxel.origin + t * voxel.direction) {
+        let middle = voxel.origin + t * voxel.direction;
+        if slab.length <= 0.0 || !is_in_brick(middle) {
             continue;
         }
         so_far.samples += 1.0;
@@ -59,7 +60,9 @@ fn march(pixel: vec2<f32>, tile: RayTile, before: Accumulator) -> Accumulator {
         if !front.is_valid || !back.is_valid {
             continue;
         }
-        so_far = add(so_far, Sample(front.value, back.value), Segment(t, slab.length));
+        // No light falls along no direction.
+        let direction = select(world.direction, vec3(0.0), k < first);
+        so_far = add(so_far, Sample(front.value, back.value, middle, direction), Segment(t, slab.length));
         if is_finished(so_far) {
             break;
         }

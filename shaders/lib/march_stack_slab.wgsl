@@ -27,7 +27,7 @@ fn march(pixel: vec2<f32>, tile: RayTile, before: Accumulator) -> Accumulator {
     // A slab is named by its lower plane; the outermost reach half a voxel beyond the slices.
     let slabs = stack_range(voxel.origin[axis], slope, counted(interval, tile), -1, i32(frame.dims[axis]) - 1);
     for (var i = 0; i < slabs.count && !is_finished(so_far); i++) {
-        let slab = stack_slab(voxel, slope, interval, slabs.first + i * slabs.step);
+        let slab = stack_slab(world, voxel, slope, interval, slabs.first + i * slabs.step);
         so_far.samples += select(0.0, 1.0, slab.is_ours);
         if slab.has_data {
             so_far = add(so_far, slab.sample, Segment(slab.t, slab.length));

@@ -5,6 +5,10 @@
 struct Sample {
     front: f32,
     back: f32,
+    // Its middle, in voxel space.
+    middle: vec3<f32>,
+    // That of the pixel's ray, in world space, a unit vector.
+    ray_direction: vec3<f32>,
 }
 
 struct End {

@@ -20,8 +20,8 @@ struct StackSlab {
 }
 
 // `slope` along the stack is not 0.
-fn stack_slab(voxel: Ray, slope: f32, interval: vec2<f32>, plane: i32) -> StackSlab {
-    let nothing = StackSlab(false, false, Sample(0.0, 0.0), 0.0, 0.0);
+fn stack_slab(world: Ray, voxel: Ray, slope: f32, interval: vec2<f32>, plane: i32) -> StackSlab {
+    let nothing = StackSlab(false, false, Sample(0.0, 0.0, vec3(0.0), vec3(0.0)), 0.0, 0.0);
     let start = voxel.origin[frame.slice_axis];
     // A ray that falls meets the upper plane first.
     let enter_plane = select(plane + 1, plane, slope > 0.0);
@@ -45,7 +45,8 @@ fn stack_slab(voxel: Ray, slope: f32, interval: vec2<f32>, plane: i32) -> StackS
     let front = end_between(voxel.origin + t_front * voxel.direction, enter_plane, t_front == enter);
     let back = end_between(voxel.origin + t_back * voxel.direction, leave_plane, t_back == leave);
     let length = select(t_back - t_front, 1.0 / (abs(slope) * frame.planes_per_slice), is_whole);
-    return StackSlab(true, front.is_valid && back.is_valid, Sample(front.value, back.value), t, length);
+    let sample = Sample(front.value, back.value, middle, world.direction);
+    return StackSlab(true, front.is_valid && back.is_valid, sample, t, length);
 }
 
 // An end on a plane, or where the interval cuts the slab.

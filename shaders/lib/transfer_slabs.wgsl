@@ -7,13 +7,12 @@
 // digits are lost where values are close. CPU reference: src/transfer/slabs.rs.
 
 #import frame
+#import slab_part_{transfer=table}
 
 // The table is folded into rows of this many texels, four a cell: mean, slope, sum, and what rounding took from it.
 const SLAB_TABLE_WIDTH: i32 = 4096;
 // Positions in the table end here: far beyond it, where f32 still can subtract.
 const FARTHEST_CELL: f32 = 1e15;
-
-@group(0) @binding(16) var slab_table: texture_2d<f32>;
 
 struct Classified {
     color: vec3<f32>,
@@ -53,9 +52,4 @@ fn slab_position(value: f32) -> f32 {
 
 fn slab_cell(position: f32) -> i32 {
     return i32(clamp(position, 0.0, f32(frame.slab_count - 1u)));
-}
-
-fn slab_part(cell: i32, part: i32) -> vec4<f32> {
-    let texel = 4 * cell + part;
-    return textureLoad(slab_table, vec2(texel & (SLAB_TABLE_WIDTH - 1), texel / SLAB_TABLE_WIDTH), 0);
 }

@@ -18,7 +18,7 @@ use crate::technique::composite::Composite;
 use crate::technique::faces::{FACE_LENGTH, cut_face, on_face};
 use crate::technique::mixture::color_of;
 use crate::technique::own_grid::{ChannelGrids, place_in_channel};
-use crate::technique::reference::{Gathered, Samples};
+use crate::technique::reference::{Gathered, Samples, moved};
 use crate::technique::shading::shade;
 use crate::technique::splat::ViewPoints;
 use crate::technique::{
@@ -427,6 +427,16 @@ impl<R: Real> Samples<R> for ReferenceRays<'_, R> {
         }
     }
 
+    fn lit(
+        &self,
+        material: [R; 4],
+        p: [R; 3],
+        ray_direction: [R; 3],
+        tap: impl Fn([i32; 3]) -> Option<R>,
+    ) -> [R; 4] {
+        self.lit_by(material, p, ray_direction, || self.gradient(p, tap))
+    }
+
     fn alike(&self) -> Option<&AlikeCells> {
         self.alike.as_ref()
     }
@@ -441,11 +451,6 @@ fn paint_of(scene: &Scene) -> Option<Points> {
     };
     let space = scene.settings.color_space;
     Some(Points::new(function, absorption, space))
-}
-
-/// The position so many voxels away.
-fn moved<R: Real>(p: [R; 3], step: [i32; 3]) -> [R; 3] {
-    std::array::from_fn(|k| p[k] + R::from_f64(step[k].into()))
 }
 
 fn filtered<R: Real>(volume: &Volume, filter: Filter, p: [R; 3]) -> Option<R> {

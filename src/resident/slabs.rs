@@ -25,7 +25,9 @@ impl GpuSlabs {
             kind: ImageKind::D2,
             extent: [width as u32, (texels.len() / width) as u32, 1],
             format: vk::Format::R32G32B32A32_SFLOAT,
-            usage: vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST,
+            usage: vk::ImageUsageFlags::SAMPLED
+                | vk::ImageUsageFlags::STORAGE
+                | vk::ImageUsageFlags::TRANSFER_DST,
             name: "slab table",
         };
         let copied = vk::BufferUsageFlags::TRANSFER_SRC;
@@ -43,7 +45,7 @@ impl GpuSlabs {
         unsafe {
             image_barrier(gpu, cmd, table, Use::Nothing, Use::TransferWrite);
             buffer_to_image(gpu, cmd, &self.staging, 0, table, Region::whole(table))?;
-            image_barrier(gpu, cmd, table, Use::TransferWrite, Use::Sampled);
+            image_barrier(gpu, cmd, table, Use::TransferWrite, Use::SampledOrRead);
         }
         Ok(())
     }

@@ -170,7 +170,7 @@ impl GpuTransfer {
         &self.table
     }
 
-    /// The integrals, where it was made with them; in [`Use::Sampled`] after the upload.
+    /// The integrals, where it was made with them; in [`Use::SampledOrRead`] after the upload.
     pub fn slab_table(&self) -> Option<&Image> {
         self.slabs.as_ref().map(|slabs| &slabs.table)
     }

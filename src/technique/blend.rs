@@ -90,12 +90,13 @@ impl Drawn {
         let slicer = format!("{slicer}{}", take.word());
         match self {
             Self::Picture(Mode::Composite) if *take == SampleKind::Preintegrated => {
-                format!("{slicer}.composite{depth_access}.{filter}.{holes}")
+                let light = variant.light_and_grids();
+                format!("{slicer}.composite{depth_access}.{filter}.{holes}{light}")
             }
             // Modes that need rays are refused where parameters are made: nothing is drawn by these.
             Self::Picture(Mode::Composite | Mode::Mida | Mode::Iso) => {
-                let mixture = variant.mixture();
-                format!("{slicer}.composite{mix}.{filter}.{holes}.{transfer}{mixture}")
+                let light = variant.light_and_grids();
+                format!("{slicer}.composite{mix}.{filter}.{holes}.{transfer}{light}")
             }
             Self::Picture(_) => format!("{slicer}.number{depth_access}.{filter}.{holes}"),
             Self::Count => format!("{slicer}.count.nearest.none"),

@@ -1,6 +1,6 @@
 //! Ways to take samples of their own, and what does not go together with them.
 
-use super::{CutFaces, Error, Lattice, Mode, Settings, SkipBy, Technique};
+use super::{CutFaces, Error, GradientStorage, Lattice, Mode, Operator, Settings, SkipBy, Technique};
 use crate::named::Named;
 use std::fmt;
 
@@ -67,13 +67,27 @@ impl Settings {
             "the light of one lamp",
             around,
         )?;
-        if self.shading.is_some() || is_occluded {
-            self.refuse_way("samples without light", "shaded ones")?;
-        }
+        self.check_lit_ways()?;
         match has_kernel {
             true => self.refuse_way(of_filter, filter),
             false => Ok(()),
         }
+    }
+
+    /// Ways of their own to take samples that light does not fall on.
+    fn check_lit_ways(&self) -> Result<(), Error> {
+        if self.shading.is_none() && self.ambient_occlusion.is_none() {
+            return Ok(());
+        }
+        let refuse = |is_there, wanted| refuse(is_there, wanted, UNLIT, SHADED);
+        refuse(self.adaptive_steps.is_some(), ADAPTIVE)?;
+        if self.is_half_angle() {
+            return self.refuse_way(UNLIT, SHADED);
+        }
+        let is_between = self.technique.draws_stacks() && (self.smooth || self.preintegrated);
+        let is_central = self.gradient_operator() == Operator::Central
+            && self.gradient_storage == GradientStorage::OnTheFly;
+        refuse_filter(self.shading.is_some() && is_between && !is_central)
     }
 
     fn check_adaptive(&self, error: f64) -> Result<(), Error> {
@@ -200,6 +214,13 @@ pub(super) fn refuse(
     }
 }
 
+fn refuse_filter(is_refused: bool) -> Result<(), Error> {
+    let of = "values on slices";
+    refuse(is_refused, "a gradient filter", of, "values between them")
+}
+
+const UNLIT: &str = "samples without light";
+const SHADED: &str = "shaded ones";
 const PREINTEGRATED: &str = "pre-integrated classification";
 const VOXELS: &str = "empty space by an octree or by runs";
 const ADAPTIVE: &str = "sampling by adaptive steps";

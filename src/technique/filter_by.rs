@@ -26,12 +26,12 @@ impl Settings {
     /// Whether pictures of one volume read its [`FootprintTexels`](crate::resident::FootprintTexels), where it has them: those of rays
     /// and of view-aligned slices, linear.
     pub fn reads_footprint_texels(&self, mix: SampleInputs) -> bool {
-        let is_point = !self.preintegrated && !self.conformance;
+        let is_free = !self.conformance && !(self.preintegrated && !self.technique.casts_rays());
         // Splats read voxels one by one, from the texture itself.
         let is_splatted = self.technique.splats();
         let has_such = !self.technique.draws_stacks() && !self.is_half_angle() && !is_splatted;
         let is_wished = self.filter_by != FilterBy::Sampler;
-        mix.is_of_one() && has_such && is_point && is_wished && self.filter == Filter::Linear
+        mix.is_of_one() && has_such && is_free && is_wished && self.filter == Filter::Linear
     }
 
     /// Whether they read nothing else of its values, so that it needs no texture: what fetches voxels one by one does.

@@ -58,8 +58,10 @@ impl Inputs<'_> {
             given.push(("transfer_table", Resource::sampled_or_read(table)));
             given.push(("stored_table", Resource::read(table)));
             given.push(("transfer_numbers", Resource::Storage(transfer.numbers())));
-            let slabs = transfer.slab_table().map(Resource::sampled);
-            given.extend(slabs.map(|table| ("slab_table", table)));
+            if let Some(slabs) = transfer.slab_table() {
+                given.push(("slab_table", Resource::sampled_or_read(slabs)));
+                given.push(("stored_slabs", Resource::read(slabs)));
+            }
         }
         // Where there is none, something stands in that is not looked at.
         let light = self.light.map(LightVolume::buffer);
@@ -158,8 +160,8 @@ pub struct ShaderVariant {
     pub is_whole: bool,
     /// Whether volumes that are mixed lie on grids of their own.
     pub has_own_grids: bool,
-    /// Whether light falls on volumes that are mixed.
-    pub is_lit_mixture: bool,
+    /// Whether light falls on what a constant lights: volumes that are mixed, slabs, samples between slices.
+    pub is_lit: bool,
     /// Rays leave what lies beside the picture: depth, value, samples, and what bricks behind go on with.
     pub writes_layers: bool,
 }
@@ -176,6 +178,14 @@ pub enum SampleKind {
 }
 
 impl SampleKind {
+    fn of(settings: &Settings) -> Self {
+        match settings.preintegrated {
+            true => Self::Preintegrated,
+            false if settings.smooth => Self::InterpolatedSlice,
+            false => Self::Point,
+        }
+    }
+
     /// Its part of a shader's name.
     pub(super) fn word(self) -> &'static str {
         match self {
@@ -206,14 +216,18 @@ impl ShaderVariant {
         let has_holes = parts.iter().any(|part| part.volume.has_holes());
         let has_surfaces = settings.shading.as_ref().is_some_and(|s| s.has_surfaces);
         let is_lit = has_surfaces || settings.wants_light_volume();
+        let take = SampleKind::of(settings);
+        let is_point = take == SampleKind::Point;
         let is_general = settings.gradient_operator() != Operator::Central
             || settings.gradient_storage == GradientStorage::Precomputed
             || settings.wants_light_volume();
         let corners = footprint_texels_of(parts).filter(|_| settings.reads_footprint_texels(mix));
         Self {
             mix: match mix {
-                SampleInputs::Scalar if is_lit && is_general => SampleInputs::ScalarGradient,
-                SampleInputs::Scalar if is_lit => SampleInputs::Shaded,
+                SampleInputs::Scalar if is_lit && is_point && is_general => {
+                    SampleInputs::ScalarGradient
+                }
+                SampleInputs::Scalar if is_lit && is_point => SampleInputs::Shaded,
                 SampleInputs::GradientOpacity if is_general => SampleInputs::ScalarGradient,
                 _ => mix,
             },
@@ -234,11 +248,7 @@ impl ShaderVariant {
                 Lattice::Planes => "planes",
                 Lattice::Bresenham => "bresenham",
             },
-            take: match settings.preintegrated {
-                true => SampleKind::Preintegrated,
-                false if settings.smooth => SampleKind::InterpolatedSlice,
-                false => SampleKind::Point,
-            },
+            take,
             transfer: match corners {
                 _ if settings.conformance => "points",
                 Some(_) => "stored",
@@ -250,7 +260,7 @@ impl ShaderVariant {
             has_own_grids: parts
                 .iter()
                 .any(|part| part.volume.grid() != parts[0].volume.grid()),
-            is_lit_mixture: has_surfaces && !mix.is_of_one() && settings.mode == Mode::Composite,
+            is_lit: is_lit && (!mix.is_of_one() || !is_point) && settings.mode == Mode::Composite,
             writes_layers: true,
         }
     }
@@ -268,9 +278,9 @@ impl ShaderVariant {
         }
     }
 
-    /// The parts of a shader's name that say how volumes are mixed.
-    pub(super) fn mixture(&self) -> &'static str {
-        match (self.is_lit_mixture, self.has_own_grids) {
+    /// The parts of a shader's name that say whether light falls by a constant, and whether grids are shared.
+    pub(super) fn light_and_grids(&self) -> &'static str {
+        match (self.is_lit, self.has_own_grids) {
             (false, false) => "",
             (false, true) => ".own",
             (true, false) => ".lit",
@@ -281,7 +291,7 @@ impl ShaderVariant {
     /// The shader of that name for such pictures: the leanest that there is, [`Self::is_whole`] before one that writes
     /// no layers.
     pub(super) fn shader(&self, name: &str) -> &'static Shader {
-        let name = &format!("{name}{}", self.mixture());
+        let name = &format!("{name}{}", self.light_and_grids());
         let whole: &[&str] = if self.is_whole {
             &[".whole", ""]
         } else {

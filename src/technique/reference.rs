@@ -55,8 +55,40 @@ pub trait Samples<R: Real> {
     fn classify(&self, value: R) -> [R; 4];
     /// The same of a slab with these values at its ends.
     fn classify_slab(&self, ends: [R; 2]) -> [R; 4];
+    /// A slab's material, lit in its middle; `tap` finds values so many voxels away from there.
+    fn material_of_slab(
+        &self,
+        slab: SlabValues<R>,
+        ray_direction: [R; 3],
+        tap: impl Fn([i32; 3]) -> Option<R>,
+    ) -> [R; 4] {
+        let own = self.classify_slab(slab.ends);
+        self.lit(own, slab.middle, ray_direction, tap)
+    }
+    /// A material at `p` with the light that falls on it; `tap` finds values so many voxels away.
+    fn lit(
+        &self,
+        material: [R; 4],
+        p: [R; 3],
+        ray_direction: [R; 3],
+        tap: impl Fn([i32; 3]) -> Option<R>,
+    ) -> [R; 4];
     /// Where one sample stands for others, where steps adapt.
     fn alike(&self) -> Option<&AlikeCells>;
+}
+
+/// What a slab is classified and lit by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlabValues<R> {
+    /// The values at its two ends.
+    pub ends: [R; 2],
+    /// Its middle, in voxel space.
+    pub middle: [R; 3],
+}
+
+/// The position so many voxels away.
+pub(crate) fn moved<R: Real>(p: [R; 3], step: [i32; 3]) -> [R; 3] {
+    std::array::from_fn(|k| p[k] + R::from_f64(step[k].into()))
 }
 
 /// What a technique leaves for one pixel, before it is resolved.

@@ -96,7 +96,7 @@ fn sample(stage: &Stage, law: &Law, frame: &Frame, at: [f64; 2], i: u32) -> Opti
             let k = frame.slice_first + i as i32 * frame.slice_direction;
             let found = planes::slab(frame, at, k, |p| linear(volume, p))??;
             let ends = plane_slab(frame, &world, interval, k).ends;
-            Some(slab(found.value, found.length, ends))
+            Some(slab(found.value.ends, found.length, ends))
         }
         (_, false) => {
             let k = stack::slice_of(frame, i);
@@ -117,7 +117,7 @@ fn sample(stage: &Stage, law: &Law, frame: &Frame, at: [f64; 2], i: u32) -> Opti
             let mut whole = [0.5, 1.5].map(|above| crossing(f64::from(k) + above));
             whole.sort_by(f64::total_cmp);
             let ends = Slab::cut(whole, interval, found.length).ends;
-            Some(slab(found.value, found.length, ends))
+            Some(slab(found.value.ends, found.length, ends))
         }
     }
 }

@@ -22,6 +22,7 @@ mod formats;
 mod gradient;
 mod half_angle;
 mod light;
+mod lit_slabs;
 mod long_rays;
 mod main_axis;
 mod maximum;

@@ -614,8 +614,8 @@ fn what_has_no_light_to_take_is_refused_by_name() {
     };
     let of_mip = refused(&|settings| settings.mode = Mode::Mip);
     assert_eq!(of_mip, Error::NotOccluded { mode: Mode::Mip });
-    let of_slabs = refused(&|settings| settings.preintegrated = true);
-    assert!(matches!(of_slabs, Error::NotFor { .. }), "{of_slabs}");
+    let of_runs = refused(&|settings| settings.adaptive_steps = Some(0.1));
+    assert!(matches!(of_runs, Error::NotFor { .. }), "{of_runs}");
     for radius in [0.0, -1.0, f64::NAN, 1e6] {
         let found = refused(&|settings| {
             settings.ambient_occlusion.as_mut().unwrap().radius_world = Some(radius);

@@ -14,10 +14,10 @@ use stratavox::technique::{Error, Filter, Jitter, Lattice, Mode, Order, Settings
 use stratavox::transfer::{Interpolation, TransferFunction};
 use stratavox::volume::Volume;
 
-const DIMS: [u32; 3] = [11, 13, 9];
+pub(super) const DIMS: [u32; 3] = [11, 13, 9];
 
 /// Every way to sample that this file is about.
-fn ways() -> Vec<Settings> {
+pub(super) fn ways() -> Vec<Settings> {
     let way = |technique, lattice, preintegrated, smooth| Settings {
         technique,
         lattice,
@@ -49,7 +49,7 @@ fn ways() -> Vec<Settings> {
     ]
 }
 
-fn shot(camera: Camera, settings: Settings, volume: &Volume) -> PictureCase {
+pub(super) fn shot(camera: Camera, settings: Settings, volume: &Volume) -> PictureCase {
     PictureCase {
         grid: volume.grid(),
         camera,
@@ -71,7 +71,7 @@ fn what(settings: &Settings) -> String {
     format!("{technique:?} {lattice:?} {order:?} {filter:?} slabs {preintegrated} smooth {smooth}")
 }
 
-fn check(
+pub(super) fn check(
     renderer: &mut Renderer,
     volume: &Volume,
     transfer: &TransferFunction,
@@ -170,7 +170,7 @@ fn the_eye_inside_sees_slabs_all_around() {
     }
 }
 
-fn with_holes() -> Volume {
+pub(super) fn with_holes() -> Volume {
     let mut volume = volume_of(DIMS, sheared_affine(), waves);
     let mask = (0..11 * 13 * 9)
         .map(|i: u32| u8::from(!i.is_multiple_of(41) && i % 53 != 3))
@@ -201,11 +201,16 @@ fn small() -> Caps {
 
 #[test]
 fn bricks_leave_slabs_bit_identical() {
+    assert_bricks_leave(ways());
+}
+
+/// Pictures of a volume in bricks are those of the whole one to the bit.
+pub(super) fn assert_bricks_leave(ways: Vec<Settings>) {
     let volume = with_holes();
     let mut whole = Renderer::new(device(), &volume).unwrap();
     let mut bricked = Renderer::new(device_with(small()), &volume).unwrap();
     let camera = oblique_camera(&volume.grid(), projections(&volume.grid())[1]);
-    for settings in ways() {
+    for settings in ways {
         let settings = Settings {
             termination: 0.01,
             ..settings
@@ -229,6 +234,13 @@ fn bricks_leave_slabs_bit_identical() {
             what(&shot.settings)
         );
     }
+}
+
+#[test]
+fn slabs_that_reach_out_of_bricks_are_refused() {
+    let volume = with_holes();
+    let mut bricked = Renderer::new(device_with(small()), &volume).unwrap();
+    let camera = oblique_camera(&volume.grid(), projections(&volume.grid())[1]);
     let settings = Settings {
         samples_per_voxel: 0.1,
         ..ways().swap_remove(0)

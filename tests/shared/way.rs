@@ -139,6 +139,16 @@ impl<R: Real> Samples<R> for Formula<'_> {
         panic!("a formula is not pre-integrated")
     }
 
+    fn lit(
+        &self,
+        material: [R; 4],
+        _p: [R; 3],
+        _ray_direction: [R; 3],
+        _tap: impl Fn([i32; 3]) -> Option<R>,
+    ) -> [R; 4] {
+        material
+    }
+
     fn alike(&self) -> Option<&AlikeCells> {
         None
     }

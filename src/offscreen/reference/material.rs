@@ -48,31 +48,37 @@ impl<R: Real> ReferenceRays<'_, R> {
         }
         if let [volume] = self.volumes[..] {
             let value = look_from(volume, settings.filter, [0; 3])?;
-            let mut material = self.classified(0, value);
-            let is_on_face = ray_direction == [R::from_f64(0.0); 3];
-            let is_lit = self.frame.light_count != 0 && !is_on_face;
-            let lamps = self.lamps(p, ray_direction);
-            let unlit = |material| match is_on_face {
-                true => material,
-                false => ambient_of(&self.frame, material, &lamps),
-            };
-            if !is_lit && self.widgets.is_none() {
-                return Some(unlit(material));
-            }
+            let material = self.classified(0, value);
             let tap = |step| look_from(volume, settings.filter, step);
+            let Some(widgets) = &self.widgets else {
+                let gradient = || self.gradient(p, tap);
+                return Some(self.lit_by(material, p, ray_direction, gradient));
+            };
             let gradient = self.gradient(p, tap);
-            if let Some(widgets) = &self.widgets {
-                let steep = steepness(&self.frame, widgets, gradient, tap);
-                material = classify_by_gradient(widgets, material, value, steep);
-            }
-            let [r, g, b, extinction] = material;
-            if !is_lit {
-                return Some(unlit(material));
-            }
-            let [r, g, b] = shade(&self.frame, [r, g, b], gradient, &lamps);
-            return Some([r, g, b, extinction]);
+            let steep = steepness(&self.frame, widgets, gradient, tap);
+            let material = classify_by_gradient(widgets, material, value, steep);
+            return Some(self.lit_by(material, p, ray_direction, || gradient));
         }
         self.mixed_channels(look_from, place)
+    }
+
+    /// A material at `p` with the light that falls on it: none along no direction, and without lamps all of it ambient.
+    pub(super) fn lit_by(
+        &self,
+        [r, g, b, extinction]: [R; 4],
+        p: [R; 3],
+        ray_direction: [R; 3],
+        gradient: impl FnOnce() -> [R; 3],
+    ) -> [R; 4] {
+        if ray_direction == [R::from_f64(0.0); 3] {
+            return [r, g, b, extinction];
+        }
+        let lamps = self.lamps(p, ray_direction);
+        let [r, g, b] = match self.frame.light_count {
+            0 => scale([r, g, b], lamps.ambient(&self.frame)),
+            _ => shade(&self.frame, [r, g, b], gradient(), &lamps),
+        };
+        [r, g, b, extinction]
     }
 }
 
@@ -108,8 +114,3 @@ pub(super) fn steepness<R: Real>(
     }
 }
 
-/// A material without lights: all light is ambient.
-fn ambient_of<R: Real>(frame: &Frame, [r, g, b, extinction]: [R; 4], lamps: &Lamps<R>) -> [R; 4] {
-    let [r, g, b] = scale([r, g, b], lamps.ambient(frame));
-    [r, g, b, extinction]
-}

@@ -6,7 +6,6 @@ use crate::scene::{Beside, Scene};
 use crate::technique::lit_mixture::{channel_gradient, label_gradient};
 use crate::technique::mixture::{color_of, colored, dimmed, material_of};
 use crate::technique::own_grid::place_in_channel;
-use crate::technique::shading::shade;
 use crate::technique::{Filter, Role};
 use crate::volume::Volume;
 use crate::volume::labels::{DIMMED, marks_of};
@@ -45,7 +44,7 @@ impl<R: Real> ReferenceRays<'_, R> {
         };
         let channel = if count == 4 { 3 } else { 0 };
         let gradient = || channel_gradient(&self.frame, channel, |step| Some(color_at(step)?.1));
-        Some(self.lit(material, place, gradient))
+        Some(self.lit_in(material, place, gradient))
     }
 
     /// Of volumes that are things of their own.
@@ -74,7 +73,7 @@ impl<R: Real> ReferenceRays<'_, R> {
         }
         let lit = |c: usize, value: R, material: [R; 4]| {
             let tap = |step| look(c, self.volumes[c], own_filter(c), step);
-            self.lit(material, place, || match self.roles[c] {
+            self.lit_in(material, place, || match self.roles[c] {
                 Role::Labels => label_gradient(&self.frame, c, value, tap),
                 Role::Numbers | Role::Opacity | Role::Material => {
                     channel_gradient(&self.frame, c, tap)
@@ -93,20 +92,16 @@ impl<R: Real> ReferenceRays<'_, R> {
     }
 
     /// A material with the light that falls on it.
-    fn lit(
+    fn lit_in(
         &self,
         [r, g, b, extinction]: [R; 4],
         place: SeenPlace<R>,
         gradient: impl FnOnce() -> [R; 3],
     ) -> [R; 4] {
-        let zero = R::from_f64(0.0);
-        let is_on_face = place.ray_direction == [zero; 3];
-        if self.frame.light_count == 0 || is_on_face || extinction == zero {
+        if extinction == R::from_f64(0.0) {
             return [r, g, b, extinction];
         }
-        let lamps = self.lamps(place.p, place.ray_direction);
-        let [r, g, b] = shade(&self.frame, [r, g, b], gradient(), &lamps);
-        [r, g, b, extinction]
+        self.lit_by([r, g, b, extinction], place.p, place.ray_direction, gradient)
     }
 }
 

@@ -80,7 +80,8 @@ impl Raycast {
             }
             _ if of == Mode::Iso => format!("isosurface.{filter}.{holes}"),
             SampleKind::Preintegrated => {
-                format!("raycast_slab.composite.{lattice}.{filter}.{holes}")
+                let stored = if *transfer == "stored" { ".stored" } else { "" };
+                format!("raycast_slab.composite.{lattice}.{filter}.{holes}{stored}")
             }
             // Of one volume without light or holes: nothing else is checked to be right.
             SampleKind::Point if *is_adaptive && of == Mode::Composite => {

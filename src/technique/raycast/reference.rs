@@ -1,13 +1,13 @@
 //! Ray casting on the CPU: CPU reference of `shaders/raycast.wgsl`.
 
 use crate::lattice::Segment;
-use crate::ray::pixel_ray;
+use crate::ray::{pixel_ray, voxel_ray};
 use crate::real::Real;
 use crate::shaders::Frame;
 use crate::technique::composite::Composite;
 use crate::technique::march::{march, march_in_runs, march_slabs};
 use crate::technique::mida::Mida;
-use crate::technique::reference::{Gathered, Samples};
+use crate::technique::reference::{Gathered, Samples, SlabValues, moved};
 use crate::technique::{Lattice, Mode};
 use std::ops::ControlFlow;
 
@@ -20,8 +20,9 @@ pub(crate) fn pixel<R: Real>(of: &impl Samples<R>, pixel: [R; 2]) -> Gathered<R>
     let material_at = |p| of.material(p, ray_direction);
     let same = |material| material;
     Gathered::of_composite(if settings.preintegrated {
-        radiance_of_slabs(frame, lattice, pixel, value_at, |ends| {
-            of.classify_slab(ends)
+        radiance_of_slabs(frame, lattice, pixel, value_at, |slab| {
+            let tap = |step| of.value(moved(slab.middle, step));
+            of.material_of_slab(slab, ray_direction, tap)
         })
     } else if mode == Mode::Mida {
         let sample_at = |p| value_at(p).zip(material_at(p));
@@ -64,17 +65,19 @@ pub fn radiance_in_runs<R: Real, V>(
     (so_far, samples)
 }
 
-/// The same of slabs: CPU reference of `shaders/raycast_slab.wgsl`. `classify` takes the values at both ends.
+/// The same of slabs: CPU reference of `shaders/raycast_slab.wgsl`.
 pub fn radiance_of_slabs<R: Real>(
     frame: &Frame,
     lattice: Lattice,
     pixel: [R; 2],
     value_at: impl Fn([R; 3]) -> Option<R>,
-    classify: impl Fn([R; 2]) -> [R; 4],
+    classify: impl Fn(SlabValues<R>) -> [R; 4],
 ) -> (Composite<R>, u32) {
     let mut so_far = Composite::default();
+    let voxel = voxel_ray(frame, &pixel_ray(frame, pixel));
     let samples = march_slabs(frame, lattice, pixel, value_at, |ends, segment| {
-        gather(frame, &mut so_far, classify(ends), segment)
+        let middle = voxel.at(segment.t);
+        gather(frame, &mut so_far, classify(SlabValues { ends, middle }), segment)
     });
     (so_far, samples)
 }

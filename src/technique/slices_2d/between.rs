@@ -15,6 +15,7 @@ use crate::real::Real;
 use crate::shaders::Frame;
 use crate::technique::View;
 use crate::technique::blend::Fragment;
+use crate::technique::reference::SlabValues;
 use crate::technique::stack_axis::facing;
 
 /// More planes than these show nothing new.
@@ -52,7 +53,8 @@ impl<R: Real> Level<R> {
         }
     }
 
-    fn at(height: R) -> Self {
+    /// That of a height in voxels along the stack.
+    pub(super) fn at(height: R) -> Self {
         let lattice = height - R::from_f64(0.5);
         let below = lattice.floor();
         Self {
@@ -115,17 +117,20 @@ pub fn fragment<R: Real, V>(
         return None;
     }
     let length = R::from_f64(1.0) / (slope.abs() * R::from_f32(frame.planes_per_slice));
-    let value = value_at(Level::of_plane(frame, plane), voxel.at(t));
+    let mut place = voxel.at(t);
+    // No rounding takes it out of its plane.
+    place[frame.slice_axis as usize] = height;
+    let value = value_at(Level::of_plane(frame, plane), place);
     Some(value.map(|value| Fragment { value, length }))
 }
 
-/// The slab of a pixel's ray between one plane and the next, its value the values at both ends.
+/// The slab of a pixel's ray between one plane and the next.
 pub fn slab<R: Real>(
     frame: &Frame,
     pixel: [R; 2],
     plane: i32,
     value_at: impl Fn(Level<R>, [R; 3]) -> Option<R>,
-) -> Option<Option<Fragment<R, [R; 2]>>> {
+) -> Option<Option<Fragment<R, SlabValues<R>>>> {
     let (voxel, interval, slope) = ray_of(frame, pixel)?;
     let axis = frame.slice_axis as usize;
     let mut planes = [plane, plane + 1];
@@ -146,9 +151,14 @@ pub fn slab<R: Real>(
         };
         value_at(level, place)
     };
+    let mut middle = voxel.at(slab.segment().t);
+    if slab.ends == whole {
+        let planes = planes.map(|i| height_of_plane::<R>(frame, i));
+        middle[axis] = R::from_f64(0.5) * (planes[0] + planes[1]);
+    }
     let ends = value(0).and_then(|front| Some([front, value(1)?]));
-    Some(ends.map(|value| Fragment {
-        value,
+    Some(ends.map(|ends| Fragment {
+        value: SlabValues { ends, middle },
         length: slab.length,
     }))
 }

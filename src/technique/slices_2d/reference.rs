@@ -6,7 +6,9 @@ use crate::real::Real;
 use crate::shaders::Frame;
 use crate::technique::Filter;
 use crate::technique::blend::Fragment;
-use crate::technique::reference::{Gathered, Samples, composited, projected};
+use crate::technique::reference::{
+    Gathered, Samples, SlabValues, composited, moved, projected,
+};
 
 /// What the slices of a pixel gather.
 pub(crate) fn pixel<R: Real>(of: &impl Samples<R>, pixel: [R; 2]) -> Gathered<R> {
@@ -20,20 +22,30 @@ pub(crate) fn pixel<R: Real>(of: &impl Samples<R>, pixel: [R; 2]) -> Gathered<R>
             fragment(frame, pixel, slice(i), value_at)
         });
     }
+    let ray_direction = pixel_ray(frame, pixel).direction;
     let between = |level, p| value_between(of, level, p);
+    let value_away = |p, step| {
+        let p = moved(p, step);
+        between(Level::at(p[axis]), p)
+    };
     if settings.preintegrated {
+        let material_of = |slab: SlabValues<R>| {
+            of.material_of_slab(slab, ray_direction, |step| value_away(slab.middle, step))
+        };
         return composited(of, |i| {
             let slab = between::slab(frame, pixel, slice(i), between)?;
-            Some(slab.map(|found| found.map(|ends| of.classify_slab(ends))))
+            Some(slab.map(|found| found.map(material_of)))
         });
     }
     if settings.smooth {
+        let material_at = |level, p| {
+            let own = of.classify(between(level, p)?);
+            Some(of.lit(own, p, ray_direction, |step| value_away(p, step)))
+        };
         return composited(of, |i| {
-            let found = between::fragment(frame, pixel, slice(i), between)?;
-            Some(found.map(|found| found.map(|value| of.classify(value))))
+            between::fragment(frame, pixel, slice(i), material_at)
         });
     }
-    let ray_direction = pixel_ray(frame, pixel).direction;
     composited(of, |i| {
         let material_at = |p| of.material_in_slice(axis, on_slice(i), p, ray_direction);
         fragment(frame, pixel, slice(i), material_at)

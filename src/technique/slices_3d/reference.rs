@@ -5,7 +5,9 @@ use crate::ray::{domain_interval, pixel_ray, plane_length, plane_t, voxel_ray};
 use crate::real::Real;
 use crate::shaders::Frame;
 use crate::technique::blend::Fragment;
-use crate::technique::reference::{Gathered, Samples, composited, projected};
+use crate::technique::reference::{
+    Gathered, Samples, SlabValues, composited, moved, projected,
+};
 use std::cmp::Ordering;
 
 /// What the slices of a pixel gather.
@@ -16,13 +18,17 @@ pub(crate) fn pixel<R: Real>(of: &impl Samples<R>, pixel: [R; 2]) -> Gathered<R>
     if settings.mode.is_projection() {
         return projected(of, |i| fragment(frame, pixel, plane(i), value_at));
     }
+    let ray_direction = pixel_ray(frame, pixel).direction;
     if settings.preintegrated {
+        let material_of = |slab: SlabValues<R>| {
+            let tap = |step| of.value(moved(slab.middle, step));
+            of.material_of_slab(slab, ray_direction, tap)
+        };
         return composited(of, |i| {
             let slab = slab(frame, pixel, plane(i), value_at)?;
-            Some(slab.map(|found| found.map(|ends| of.classify_slab(ends))))
+            Some(slab.map(|found| found.map(material_of)))
         });
     }
-    let ray_direction = pixel_ray(frame, pixel).direction;
     let material_at = |p| of.material(p, ray_direction);
     composited(of, |i| fragment(frame, pixel, plane(i), material_at))
 }
@@ -50,14 +56,13 @@ pub fn fragment<R: Real, V>(
     Some(value_at(voxel.at(t)).map(|value| Fragment { value, length }))
 }
 
-/// The slab of a pixel's ray around one plane, its value the values at both ends: CPU reference of
-/// `shaders/slices_3d_slab.wgsl`.
+/// The slab of a pixel's ray around one plane: CPU reference of `shaders/slices_3d_slab.wgsl`.
 pub fn slab<R: Real>(
     frame: &Frame,
     pixel: [R; 2],
     plane: i32,
     value_at: impl Fn([R; 3]) -> Option<R>,
-) -> Option<Option<Fragment<R, [R; 2]>>> {
+) -> Option<Option<Fragment<R, SlabValues<R>>>> {
     let world = pixel_ray(frame, pixel);
     let voxel = voxel_ray(frame, &world);
     let interval = domain_interval(frame, &world, &voxel);
@@ -66,10 +71,10 @@ pub fn slab<R: Real>(
         return None;
     }
     let [front, back] = slab.ends.map(|t| value_at(voxel.at(t)));
-    let length = slab.length;
-    let fragment = |front| Some((front, back?));
-    Some(front.and_then(fragment).map(|(front, back)| Fragment {
-        value: [front, back],
-        length,
+    let middle = voxel.at(slab.segment().t);
+    let ends = front.and_then(|front| Some([front, back?]));
+    Some(ends.map(|ends| Fragment {
+        value: SlabValues { ends, middle },
+        length: slab.length,
     }))
 }
