@@ -80,6 +80,9 @@ const SLAB: Slot = slot("inputs", &["slab"]);
 /// One number, and where it was taken between the slices of a stack. The words are left out of names.
 const BETWEEN: Slot = slot("inputs", &["between"]);
 const STACK_PLACE: Slot = slot("place", &["between"]);
+/// Central differences and unhindered light, and no more: drivers on CPUs go through all that there is for each sample.
+const TEXEL_PLACE: Slot = slot("place", &["texels"]);
+const UNHINDERED: Slot = slot("lamps", &["light_unhindered"]);
 /// What a compute pass walks along: a line of samples, one of slabs, or the slices of a stack, by points and by slabs.
 const LINE: Slot = slot("walk", &["march"]);
 const SLABS: Slot = slot("walk", &["march_slab"]);
@@ -115,6 +118,8 @@ pub const SILENT: &[&str] = &[
     "unlit",
     "cells",
     "between",
+    "texels",
+    "light_unhindered",
 ];
 /// Who reads the parameters of slices: the fragments, or the vertices for them (`flat_varyings.rs`).
 const PARAMETERS: Slot = slot("parameters", &["uniform", "planes", "stack"]);
@@ -361,6 +366,8 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
             STORED,
             SHARED,
             LIGHT,
+            TEXEL_PLACE,
+            UNHINDERED,
             CUTS,
         ],
     ),

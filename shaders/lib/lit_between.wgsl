@@ -2,7 +2,7 @@
 // middle. CPU reference: src/technique/shading.rs.
 
 #import shade
-#import light
+#import {lamps=light}
 #import gradient_of_{place=box}
 
 // At a position in voxel space. A cut face, seen along no direction, has its own colour; without lights all light is

@@ -39,9 +39,14 @@ fn beside_of(found: Accumulator) -> vec4<f32> {
 }
 
 fn add(so_far: Accumulator, sample: Sample, segment: Segment) -> Accumulator {
-    var material = material_of(sample);
+    return with_material(so_far, material_of(sample), value_of(sample), segment);
+}
+
+// With a sample of this value and matter.
+fn with_material(so_far: Accumulator, own: Classified, value: f32, segment: Segment) -> Accumulator {
+    var material = own;
     if segment.length == FACE_LENGTH {
-        material = on_face(material, value_of(sample));
+        material = on_face(material, value);
     }
     let opacity = opacity_over(material.extinction, segment.length);
     var next = so_far;
@@ -49,7 +54,7 @@ fn add(so_far: Accumulator, sample: Sample, segment: Segment) -> Accumulator {
     next.transmittance *= 1.0 - opacity;
     if so_far.depth < 0.0 && next.transmittance <= 0.5 {
         next.depth = segment.t;
-        next.value = value_of(sample);
+        next.value = value;
     }
     return next;
 }

@@ -4,6 +4,15 @@
 #import slab
 #import lattice_ray
 
+// Where slab k begins, unless it is cut short there; and how long one is that is not.
+fn edge_of(lattice: Lattice, world: Ray, k: i32) -> f32 {
+    return lattice.start + f32(k) * frame.step_world;
+}
+
+fn whole_length(world: Ray) -> f32 {
+    return frame.step_world;
+}
+
 fn slab_of(lattice: Lattice, world: Ray, k: i32) -> Slab {
     let enter = lattice.start + f32(k) * frame.step_world;
     let is_last = k + 1 >= lattice.count;

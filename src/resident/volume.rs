@@ -44,11 +44,11 @@ impl TextureLayout {
     }
 
     /// Voxels on either side that a sample of a brick may need: two for the widest filter, the cubic, one more for
-    /// the differences that make its gradient. Across the slices of a stack one does for both: nothing there looks
-    /// farther than the next slice.
+    /// the differences that make its gradient. Across the slices of a stack two do: a sample between two slices, and its
+    /// gradient one slice on.
     pub(super) fn halo(self) -> [u32; 3] {
         self.filtered_axes()
-            .map(|is_filtered| if is_filtered { 3 } else { 1 })
+            .map(|is_filtered| if is_filtered { 3 } else { 2 })
     }
 }
 

@@ -26,7 +26,8 @@ impl Settings {
     /// Whether pictures of one volume read its [`FootprintTexels`](crate::resident::FootprintTexels), where it has them: those of rays
     /// and of view-aligned slices, linear.
     pub fn reads_footprint_texels(&self, mix: SampleInputs) -> bool {
-        let is_free = !self.conformance && !(self.preintegrated && !self.technique.casts_rays());
+        let is_slab = self.preintegrated && (!self.technique.casts_rays() || self.has_general_light());
+        let is_free = !self.conformance && !is_slab;
         // Splats read voxels one by one, from the texture itself.
         let is_splatted = self.technique.splats();
         let has_such = !self.technique.draws_stacks() && !self.is_half_angle() && !is_splatted;
@@ -36,9 +37,14 @@ impl Settings {
 
     /// Whether they read nothing else of its values, so that it needs no texture: what fetches voxels one by one does.
     pub(crate) fn reads_footprint_texels_alone(&self, mix: SampleInputs) -> bool {
+        let has_texels = self.per_mode.exact_maximum || self.has_general_light();
+        self.reads_footprint_texels(mix) && !has_texels
+    }
+
+    /// Light that something hinders, or gradients by other than central differences.
+    fn has_general_light(&self) -> bool {
         let is_central = self.gradient_operator() == Operator::Central
             && self.gradient_storage == GradientStorage::OnTheFly;
-        let has_texels = self.per_mode.exact_maximum || self.wants_light_volume() || !is_central;
-        self.reads_footprint_texels(mix) && !has_texels
+        self.wants_light_volume() || !is_central
     }
 }

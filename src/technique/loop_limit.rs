@@ -5,9 +5,9 @@
 //! turns of a sample = 3 + n (looks (1 + mask + filter) + weights + search + light)
 //! ```
 //!
-//! for n volumes: the sample itself, the search for it, what is left out on the way; with 7 looks where a gradient is
-//! made of differences, 28 more (with the turn that ends them) where there is a second derivative, two where there are
-//! slabs, and else one. A mask goes round for the layers and rows of the footprint, a kernel for those of its taps, a
+//! for n volumes: the sample itself, the search for it, what is left out on the way; with one look, or two where
+//! there are slabs, 6 more where a gradient is made of differences, 14 where it is that of labels, and 28 (with the turn that
+//! ends them) where there is a second derivative. A mask goes round for the layers and rows of the footprint, a kernel for those of its taps, a
 //! search for the halvings of the points, light for lamps and for the corners of a cell of the light volume. Clip
 //! planes are gone over once a ray, and once more for cut faces.
 
@@ -54,22 +54,27 @@ pub fn turns_per_sample(
     };
     let are_kept = settings.gradient_storage == GradientStorage::Precomputed;
     let is_weighted = settings.gradient_operator() != Operator::Central;
-    let fetches = match (variant.mix, variant.take) {
-        (mix, _) if mix.uses_gradient() => {
-            let first = if is_weighted || are_kept { 1 } else { 7 };
-            first + if functions.second { 28 } else { 0 }
-        }
-        (_, SampleKind::Preintegrated) => 2,
-        _ => 1,
+    let has_gradient = variant.mix.uses_gradient() || variant.is_lit;
+    let of_values = if variant.take == SampleKind::Preintegrated {
+        2
+    } else {
+        1
     };
+    let of_gradient = match has_gradient {
+        // Labels have eight corners more.
+        true if volumes > 1 => 14,
+        true if !is_weighted && !are_kept => 6,
+        _ => 0,
+    };
+    let fetches = of_values + of_gradient + if functions.second { 28 } else { 0 };
     // Four layers of four rows, with the turns that end them, and the choice of the weights.
-    let weights = if variant.mix.uses_gradient() && is_weighted && !are_kept {
+    let weights = if has_gradient && is_weighted && !are_kept {
         5 * 5 + 5
     } else {
         0
     };
     // Over lights, and over the corners of a cell of the light volume for each of them and for ambient light.
-    let light = if variant.mix.uses_gradient() {
+    let light = if has_gradient {
         let corners = if settings.wants_light_volume() { 9 } else { 1 };
         let shading = settings.shading.as_ref();
         let lights = shading.map_or(0, |shading| shading.lights.len().max(1)) as u64;
