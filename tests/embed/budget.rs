@@ -283,7 +283,7 @@ fn rays_that_keep_no_depth_take_one_image_a_frame() {
     let function = Window::of_range([0.0, 100.0]).grey(Classified::Samples);
     let stage = stage(Technique::Raycast);
     for (extent, frames_in_flight, most) in
-        [([3840, 2160], 3, 400 * MIB), ([1920, 1080], 2, 64 * MIB)]
+        [([3840, 2160], 3, 400 * MIB), ([1920, 1080], 2, 72 * MIB)]
     {
         let host = Host::new();
         let gpu = host.gpu();

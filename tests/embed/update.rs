@@ -424,7 +424,10 @@ fn what_a_volume_does_not_take_is_refused_by_name() {
     );
     let part = VoxelPart::from(&right);
     let small = VoxelPart {
-        held: region,
+        held: VoxelBox {
+            max: [9, 6, 7],
+            ..region
+        },
         ..part
     };
     let (wide, _) = stored(VoxelType::U16, &kept.values);

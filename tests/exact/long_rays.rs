@@ -88,8 +88,10 @@ fn a_ray_is_as_long_as_its_reference_up_to_the_limit_of_the_driver() {
             let drawn = renderer.render(&scene, &[LayerKind::Samples]);
             drawn.map(|drawn| (drawn.picture, reference::render::<f32>(&scene).unwrap()))
         };
-        // 400 000 samples are over the limit of every picture on a driver that has one.
-        let error = draw(1000.0).err();
+        // 400 000 samples are over the limit of every picture on a driver that has one. On a graphics card, which has none,
+        // they would take minutes.
+        let may_end_loops = device().gpu().is_cpu();
+        let error = may_end_loops.then(|| draw(1000.0).err()).flatten();
         let at_most = match error {
             Some(Error::Technique(technique::Error::LoopsEnd { wanted, limit, .. })) => {
                 refused += 1;

@@ -46,7 +46,7 @@ fn assert_staged(voxels: Voxels, fill: Option<f64>, texel: impl Fn(usize, usize)
     for layout in layouts() {
         let made = GpuVolume::new(device.gpu(), &volume, layout).expect("room");
         let bytes = made.texel().bytes();
-        let slabs = made.slabs(100_000);
+        let slabs = made.slabs(50_000 * bytes as u64);
         assert!(slabs.len() > 5, "{} slabs", slabs.len());
         for slab in slabs {
             let indices = indices(layout, slab.region);

@@ -15,6 +15,10 @@ use crate::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction}
 
 /// Half a unit in the last place of an f32 at 1.
 const U: f64 = 1.0 / (1u32 << 24) as f64;
+/// Codes, over 256.
+const LARGEST_CODE: f64 = 1.25;
+/// The same of a 16-bit float.
+const HALF: f64 = 1.0 / 2048.0;
 /// What log may be off by near 1 (Vulkan specification, "Precision and Operation of SPIR-V Instructions").
 const LOG: f64 = 1.0 / (1u32 << 21) as f64;
 /// What a table of a transfer function may be off by (`sampling.md` 4).
@@ -23,7 +27,8 @@ const TABLE: f64 = 1.0 / 4096.0;
 /// How the bounds of exact pictures are made.
 pub const DERIVATION: &str = "u = 2^-24. A place is a sum of four products of f32 (8 u of the sum of their sizes, each way), \
 its value is off by the steps of the field times that, by taps x 3 u of the largest code, and, with the device's sampler, by the \
-steps times 2^-b (b sub-texel bits: a weight may be rounded either way). Opacity and colour follow with their slopes (and 1/4096 \
+steps times 2^-b (b sub-texel bits: a weight may be rounded either way), and of 16-bit floats by 3 x 2^-11 of the largest (a \
+sampler may keep the texels' own precision, and round once an axis). Opacity and colour follow with their slopes (and 1/4096 \
 where a table stands for the points), extinction with 2^-21 for log and 1 / (1 - o), a segment's depth with its length, its \
 opacity with (3 + 2x) 2^-23 for exp (Vulkan specification, precision of SPIR-V instructions). Of a composited ray each \
 segment's slip is seen by at most all of the light: the sum over segments, and 6 u for each blend. Sums: 3 u of their size a \
@@ -108,13 +113,22 @@ impl Answer {
     };
 }
 
-/// What the ray of a chord should show. `None` where it depends on rounding. `bits`: of the device's sampler.
+/// How exactly a device's sampler may interpolate.
+#[derive(Clone, Copy, Debug)]
+pub struct SamplerPrecision {
+    /// Of its weights.
+    pub bits: u32,
+    /// Whether texels are 16-bit floats, whose precision it may keep.
+    pub keeps_halves: bool,
+}
+
+/// What the ray of a chord should show. `None` where it depends on rounding.
 pub fn answer(
     shot: &PictureCase,
     chord: &Chord,
     field: &Field,
     classes: &Classes,
-    bits: u32,
+    sampler: SamplerPrecision,
 ) -> Option<Answer> {
     if chord.hangs {
         return None;
@@ -122,7 +136,7 @@ pub fn answer(
     if chord.samples.is_empty() {
         return Some(Answer::NOTHING);
     }
-    let values = values(shot, chord, field, bits)?;
+    let values = values(shot, chord, field, sampler)?;
     Some(match shot.settings.mode {
         Mode::Composite => composite(shot, chord, &values, classes),
         mode => projected(chord, &values, classes, mode),
@@ -130,7 +144,12 @@ pub fn answer(
 }
 
 /// Value and what it may be off by, of each sample.
-fn values(shot: &PictureCase, chord: &Chord, field: &Field, bits: u32) -> Option<Vec<(f64, f64)>> {
+fn values(
+    shot: &PictureCase,
+    chord: &Chord,
+    field: &Field,
+    sampler: SamplerPrecision,
+) -> Option<Vec<(f64, f64)>> {
     let settings = &shot.settings;
     let by_sampler = !settings.conformance && settings.filter != Filter::Nearest;
     let taps = match settings.filter {
@@ -139,10 +158,14 @@ fn values(shot: &PictureCase, chord: &Chord, field: &Field, bits: u32) -> Option
         _ => 64.0,
     };
     let weights = match by_sampler {
-        true => field.steps().element_sum() * 2f64.powi(-(bits as i32)),
+        true => field.steps().element_sum() * 2f64.powi(-(sampler.bits as i32)),
         false => 0.0,
     };
-    let of_filter = taps * 3.0 * U * 1.25 + weights;
+    let digits = match by_sampler && sampler.keeps_halves {
+        true => 3.0 * HALF * LARGEST_CODE,
+        false => 0.0,
+    };
+    let of_filter = taps * 3.0 * U * LARGEST_CODE + weights + digits;
     let sample = |&(t, _): &(f64, f64)| {
         let (value, moved) = field.sampled(shot, chord, t)?;
         Some((value, moved + of_filter))

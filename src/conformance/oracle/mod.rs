@@ -14,7 +14,7 @@ mod seen;
 mod tracked;
 mod voxels;
 
-pub use answer::{Answer, Classes, DERIVATION, answer};
+pub use answer::{Answer, Classes, DERIVATION, SamplerPrecision, answer};
 pub use chord::{Chord, PictureCase};
 pub use field::{Field, Kind};
 pub use light::Open;

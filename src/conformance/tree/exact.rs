@@ -5,7 +5,7 @@ use super::drawn::{DERIVATION_F16, WIDEST, errors};
 use super::ground::{self, FILTERS, MODES, PLACEMENTS, PROJECTIONS, Placement, TYPES};
 use crate::conformance::case::{Case, Profile, Stop};
 use crate::conformance::measurement::{Bound, Measurement, Pictures};
-use crate::conformance::oracle::{Answer, Classes, Kind, PictureCase, answer};
+use crate::conformance::oracle::{Answer, Classes, Kind, PictureCase, SamplerPrecision, answer};
 use crate::conformance::test_bed::TestBed;
 use crate::picture::{LayerKind, Picture};
 use crate::technique::{Filter, Mode};
@@ -101,6 +101,10 @@ impl Of {
             false => &[],
         };
         let bits = bed.subtexel_bits()?;
+        let sampler = SamplerPrecision {
+            bits,
+            keeps_halves: self.stored == VoxelType::F16,
+        };
         let found = bed.render(&scene, layers)?;
         // By points and fetches: the answer is allowed what a table and a sampler may be off by.
         let exact = shot.with(|settings| settings.conformance = true);
@@ -109,7 +113,7 @@ impl Of {
             false => None,
         };
         Ok(compare(&shot, &found, of_blending, bits, |chord| {
-            answer(&shot, chord, &field, &classes, bits)
+            answer(&shot, chord, &field, &classes, sampler)
         }))
     }
 }

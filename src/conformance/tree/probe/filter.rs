@@ -18,7 +18,8 @@ use std::sync::Arc;
 
 const DERIVATION: &str = "A weight of the sampler has b bits and may be rounded either way: the result lies between the extremes at \
 the corners of the box of weights. b = 4 is the least of Vulkan (a result outside of it fails), the reported b is what it should be \
-(a result outside is a warning). Vulkan does not say how exactly texels are weighed: a device that keeps the texels' own precision \
+(a result outside is a warning). Vulkan does not say how exactly texels are weighed: the products of the weights, of n texels, may be \
+rounded to the reported bits too (n 2^-(b+1) of the largest texel: more than the box alone is a warning); a device that keeps the texels' own precision \
 rounds once an axis, half a unit of the format each (3 units of 2^-11 or 2^-24 of the largest texel for floats); one that computes in \
 f32 is within 16 x 2^-24.";
 
@@ -165,6 +166,8 @@ impl Of {
             _ => 16.0 / f64::from(1u32 << 24) * largest,
         };
         let fine = 16.0 / f64::from(1u32 << 24) * largest;
+        let texels = if self.kind == ImageKind::D3 { 8.0 } else { 4.0 };
+        let of_products = 0.5 * texels * 2f64.powi(-(bits as i32)) * largest;
         for (&place, &found) in places.iter().zip(found) {
             let at = || format!("place {place:?}");
             if !self.is_linear {
@@ -175,7 +178,7 @@ impl Of {
                 continue;
             }
             let [least, reported] = [4, bits].map(|bits| self.legal(values, place, bits));
-            measurement.take_in(at, least, found.into(), unit);
+            measurement.take_in(at, least, found.into(), unit + of_products);
             let [low, high] = reported;
             let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
             measurement.prefer(COARSE, at, middle, found.into(), half + fine);
