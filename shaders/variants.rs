@@ -387,16 +387,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     (
         "slices_2d_slab",
-        &[
-            BLEND,
-            SLAB,
-            END,
-            NARROW,
-            HOLES,
-            TAPS,
-            LIGHT,
-            STACK_PLACE,
-        ],
+        &[BLEND, SLAB, END, NARROW, HOLES, TAPS, LIGHT, STACK_PLACE],
     ),
     (
         "slices_2d_slab",

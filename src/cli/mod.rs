@@ -30,6 +30,7 @@ mod look;
 mod manuals;
 mod memory;
 mod output;
+mod planes;
 mod preset;
 mod progress;
 mod readable;

@@ -7,6 +7,7 @@ use super::{
     load::open,
     look::{Chosen, Framing, Use, View, Views, prepared},
     output::{self, write_whole},
+    planes::Panels,
     progress::{Progress, ProgressWord},
     reasons::why_empty,
     renderer::Device,
@@ -185,7 +186,15 @@ impl Render {
             is_opaque: format == PictureFormat::Png,
             depth,
         };
-        let framing = Framing::new(&scene, &shown, made_for, extent_pixels, !self.no_skip);
+        let panels = Panels::of(&scene, &shown, extent_pixels)?;
+        let frame = |scene| Framing::new(scene, &shown, made_for, panels.extent(), !self.no_skip);
+        if panels.are_several() && !layers.is_empty() {
+            return Err(Error::usage(
+                "--aov is of one view, and --section has several planes",
+                "name one plane, or leave out --aov",
+            ));
+        }
+        let framing = frame(&panels.scenes()[0]);
         let views = Views::default();
         let (mut renderer, view) = prepared(&framing, &parts, &layers, device, &views)?;
         // Of the scene with its look: a light that is given falls on what the look lights.
@@ -212,7 +221,9 @@ impl Render {
         let mut picture = last.expect("at least one picture is drawn");
         let start = Instant::now();
         let reasoned = parts.only(classification);
-        if let Some(reason) = why_empty(&picture, volume, reasoned, camera, settings) {
+        if !panels.are_several()
+            && let Some(reason) = why_empty(&picture, volume, reasoned, camera, settings)
+        {
             progress.note(&format!("the picture is empty: {reason}"));
         }
         let annotation = annotation(&scene, &shown.header, settings.mode)?;
@@ -230,6 +241,22 @@ impl Render {
             background,
             format,
         )?;
+        let mut pictures = vec![picture];
+        for scene in &panels.scenes()[1..] {
+            let view = frame(scene).view()?;
+            let mut picture = renderer.draw_other(&view.camera, &view.settings, panels.extent())?;
+            finish(
+                &mut picture,
+                annotation,
+                &shown,
+                &view,
+                &mut renderer,
+                background,
+                format,
+            )?;
+            pictures.push(picture);
+        }
+        let picture = panels.together(pictures, background);
 
         progress.stage("write", 0, 1);
         let options = WriteOptions {
@@ -256,7 +283,12 @@ impl Render {
             let base = shown.base(&scene, settings.mode)?;
             let beside = parts.beside();
             let chosen = Chosen::of_picture(view, &shown, beside, integrals, base.as_ref());
-            let text = scene_file::text(&chosen.frozen(&view.scene), path);
+            let mut frozen = chosen.frozen(&view.scene);
+            if panels.are_several() {
+                frozen.section = scene.section.clone();
+                frozen.camera.view_height = scene.camera.view_height;
+            }
+            let text = scene_file::text(&frozen, path);
             write_whole(path, text.as_bytes(), self.force, gate)?;
         }
         if let Some(path) = &self.timings {

@@ -1,6 +1,8 @@
 //! Ways to take samples of their own, and what does not go together with them.
 
-use super::{CutFaces, Error, GradientStorage, Lattice, Mode, Operator, Settings, SkipBy, Technique};
+use super::{
+    CutFaces, Error, GradientStorage, Lattice, Mode, Operator, Settings, SkipBy, Technique,
+};
 use crate::named::Named;
 use std::fmt;
 

@@ -26,7 +26,8 @@ impl Settings {
     /// Whether pictures of one volume read its [`FootprintTexels`](crate::resident::FootprintTexels), where it has them: those of rays
     /// and of view-aligned slices, linear.
     pub fn reads_footprint_texels(&self, mix: SampleInputs) -> bool {
-        let is_slab = self.preintegrated && (!self.technique.casts_rays() || self.has_general_light());
+        let is_slab =
+            self.preintegrated && (!self.technique.casts_rays() || self.has_general_light());
         let is_free = !self.conformance && !is_slab;
         // Splats read voxels one by one, from the texture itself.
         let is_splatted = self.technique.splats();

@@ -194,3 +194,87 @@ fn a_clip_box_is_six_clip_planes_and_its_faces_are_seen() {
         idle.err
     );
 }
+
+/// The numbers of a picture.
+fn picture(folder: &Folder, words: &str, [width, height]: [usize; 2]) -> Vec<[f32; 4]> {
+    let fixed = format!("-o a.npy --size {width}x{height} --force");
+    let ran = folder.run(&format!("render v.nrrd {fixed} {words}"));
+    ran.assert_done();
+    assert!(!ran.err.contains("no effect"), "{}", ran.err);
+    let bytes = fs::read(folder.path("a.npy")).expect("a picture");
+    let numbers = &bytes[bytes.len() - 16 * width * height..];
+    let number = |b: &[u8]| f32::from_le_bytes(b.try_into().expect("four bytes"));
+    let pixel = |b: &[u8]| [0, 4, 8, 12].map(|i| number(&b[i..i + 4]));
+    numbers.chunks(16).map(pixel).collect()
+}
+
+#[test]
+fn several_planes_are_those_of_single_pictures_at_one_scale() {
+    let folder = Folder::new();
+    volume(&folder);
+    let planes = ["axial", "coronal", "sagittal"];
+    let window = "--window 0,444 --background 0,0,1";
+    // In a row, in a column, and two by two where that is largest.
+    for ([width, height], corners) in [
+        ([56, 16], [[0, 0], [20, 0], [40, 0]]),
+        ([16, 60], [[0, 0], [0, 21], [0, 42]]),
+        ([44, 44], [[0, 0], [24, 0], [0, 24]]),
+    ] {
+        let all = picture(
+            &folder,
+            &format!("--section {} {window}", planes.join(",")),
+            [width, height],
+        );
+        let panel = if width == 16 {
+            [16, 17]
+        } else {
+            [height.min(20), height.min(20)]
+        };
+        // The box is 5 across.
+        let view_height = 5.0 * panel[1] as f64 / panel[0] as f64;
+        let mut inside = vec![false; width * height];
+        for (plane, [left, top]) in planes.iter().zip(corners) {
+            let words = format!("--section {plane} --view-height {view_height} {window}");
+            let alone = picture(&folder, &words, panel);
+            for (i, wanted) in alone.iter().enumerate() {
+                let at = (top + i / panel[0]) * width + left + i % panel[0];
+                inside[at] = true;
+                assert_eq!(&all[at], wanted, "{plane} of {width} x {height}, pixel {i}");
+            }
+        }
+        let outside = all.iter().zip(&inside).filter(|(_, inside)| !**inside);
+        for (pixel, _) in outside {
+            assert_eq!(pixel, &[0.0, 0.0, 1.0, 1.0], "between the planes");
+        }
+    }
+    // A scene file says them, and draws the same.
+    let words = format!("--section axial,coronal,sagittal {window}");
+    let first = picture(&folder, &format!("{words} --save-scene s.json"), [56, 16]);
+    assert_eq!(picture(&folder, "--scene s.json", [56, 16]), first);
+    for (command, words, text) in [
+        (
+            "render",
+            "--section axial,coronal --aov value -o b.npy",
+            "--aov is of one view",
+        ),
+        (
+            "render",
+            "--section axial,coronal --size 17x17 -o b.png",
+            "no room",
+        ),
+        (
+            "render",
+            "--section axial,flat -o b.png",
+            "wanted axial, coronal, sagittal",
+        ),
+        (
+            "animate",
+            "--section axial,coronal -o b.gif",
+            "several planes",
+        ),
+    ] {
+        folder
+            .run(&format!("{command} v.nrrd {words}"))
+            .assert_refused(2, &[text]);
+    }
+}

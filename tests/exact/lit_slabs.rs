@@ -287,6 +287,11 @@ fn gradient_filters_light_slabs_of_rays_and_are_refused_between_slices() {
             assert!(error.contains("a gradient filter"), "{error}");
             continue;
         }
-        check(&mut renderer, &volume, &ramps(), &shot(camera, settings, &volume));
+        check(
+            &mut renderer,
+            &volume,
+            &ramps(),
+            &shot(camera, settings, &volume),
+        );
     }
 }

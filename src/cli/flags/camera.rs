@@ -231,10 +231,10 @@ impl CameraFlags {
     }
 
     /// Flags that change nothing under the others, a sentence each.
-    pub fn idle(&self) -> Vec<&'static str> {
+    pub fn idle(&self, is_section: bool) -> Vec<&'static str> {
         let mut notes = Vec::new();
         match self.projection.unwrap_or_default() {
-            ProjectionWord::Perspective if self.view_height.is_some() => {
+            ProjectionWord::Perspective if self.view_height.is_some() && !is_section => {
                 notes.push("--view-height has no effect without --projection orthographic");
             }
             ProjectionWord::Orthographic if self.fov.is_some() => {

@@ -195,7 +195,7 @@ impl SceneFlags {
             self.modes.idle(mode),
             self.light.idle(mode),
             self.gradient.idle(self.may_have_gradients()),
-            self.camera.idle(),
+            self.camera.idle(self.section.section.is_some()),
             self.annotate.idle(),
         ];
         let mut notes = topics.concat();

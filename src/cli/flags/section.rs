@@ -28,20 +28,27 @@ use std::{fmt, str::FromStr};
 pub struct SectionFlags {
     /// Show a cut through --target, seen from in front: axial (from below), coronal (from anterior), sagittal (from
     /// the left), or by its normal; on the Earth axial is a map (from above) and coronal seen from the south; --mode is
-    /// average unless given
+    /// average unless given. Up to four planes in one picture, at one scale: axial,coronal,sagittal
     #[arg(long, value_name = "PLANE", allow_hyphen_values = true, help_heading = "Camera",
           conflicts_with_all = ["projection", "fov", "view", "azimuth", "elevation", "eye"])]
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub section: Option<Plane>,
+    pub section: Option<Planes>,
     /// World thickness of the cut; --mode says what becomes of its values [default: one sample]
     #[arg(long, value_name = "T", value_parser = positive, requires = "section", help_heading = "Camera")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub thickness: Option<f64>,
 }
 
-/// Every word of `--section`, and the direction that a plane faces.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// The planes of `--section`, one or more.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
+pub struct Planes(Vec<Plane>);
+
+/// More have no room in a picture.
+const MOST_PLANES: usize = 4;
+
+/// Every word of `--section`, and the direction that a plane faces.
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(missing_docs, reason = "the names say it")]
 pub enum Plane {
     Axial,
@@ -55,6 +62,28 @@ pub enum Plane {
 const THINNEST: f64 = 0.01;
 
 impl SectionFlags {
+    /// The same flags for each of the planes alone; none without a section.
+    pub fn each(&self) -> Vec<Self> {
+        let planes = self.section.iter().flat_map(|planes| &planes.0);
+        let alone = |&plane: &Plane| Self {
+            section: Some(Planes(vec![plane])),
+            ..self.clone()
+        };
+        planes.map(alone).collect()
+    }
+
+    /// The plane, where there is one.
+    fn plane(&self) -> Result<Option<Plane>, Error> {
+        match self.section.as_ref().map(|planes| &planes.0[..]) {
+            None => Ok(None),
+            Some(&[plane]) => Ok(Some(plane)),
+            Some(_) => Err(Error::usage(
+                "--section of several planes makes one picture of them, and only `render` draws that",
+                "name one plane",
+            )),
+        }
+    }
+
     /// What to compute: a cut is the mean over its thickness unless another mode is asked for.
     pub fn settings(&self, sampling: &SamplingFlags, depth: Depth) -> Result<Settings, Error> {
         let mut settings = sampling.settings(depth)?;
@@ -105,7 +134,7 @@ impl SectionFlags {
         extent_pixels: [u32; 2],
         settings: &mut Settings,
     ) -> Result<Camera, Error> {
-        let Some(plane) = self.section else {
+        let Some(plane) = self.plane()? else {
             return camera.camera(subject, extent_pixels);
         };
         if camera.places_the_eye() {
@@ -187,6 +216,37 @@ impl Plane {
     }
 }
 
+impl FromStr for Planes {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        // A normal has commas of its own.
+        if let Ok(plane) = text.parse() {
+            return Ok(Self(vec![plane]));
+        }
+        let planes: Result<Vec<Plane>, _> = text.split(',').map(str::parse).collect();
+        let planes = planes.map_err(|_| {
+            "wanted axial, coronal, sagittal, several of them with commas between, or the normal NX,NY,NZ of a plane"
+        })?;
+        match planes.len() {
+            0..=MOST_PLANES => Ok(Self(planes)),
+            found => Err(format!(
+                "wanted at most {MOST_PLANES} planes, found {found}"
+            )),
+        }
+    }
+}
+
+impl fmt::Display for Planes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, plane) in self.0.iter().enumerate() {
+            let comma = if i > 0 { "," } else { "" };
+            write!(f, "{comma}{plane}")?;
+        }
+        Ok(())
+    }
+}
+
 impl FromStr for Plane {
     type Err = String;
 
@@ -213,7 +273,7 @@ impl fmt::Display for Plane {
     }
 }
 
-impl TryFrom<String> for Plane {
+impl TryFrom<String> for Planes {
     type Error = String;
 
     fn try_from(text: String) -> Result<Self, String> {
@@ -221,9 +281,9 @@ impl TryFrom<String> for Plane {
     }
 }
 
-impl From<Plane> for String {
-    fn from(plane: Plane) -> Self {
-        plane.to_string()
+impl From<Planes> for String {
+    fn from(planes: Planes) -> Self {
+        planes.to_string()
     }
 }
 
@@ -296,7 +356,7 @@ mod tests {
         };
         for (plane, up) in [(Plane::Axial, DVec3::Y), (Plane::Coronal, DVec3::Z)] {
             let section = SectionFlags {
-                section: Some(plane),
+                section: Some(Planes(vec![plane])),
                 thickness: None,
             };
             let (camera, mut settings) = (CameraFlags::default(), Settings::default());
@@ -323,7 +383,7 @@ mod tests {
     #[test]
     fn what_goes_against_a_section_is_refused() {
         let section = SectionFlags {
-            section: Some(Plane::Axial),
+            section: Some(Planes(vec![Plane::Axial])),
             thickness: None,
         };
         let turned = CameraFlags {
@@ -339,10 +399,23 @@ mod tests {
         };
         let refused = section.settings(&slices, Depth::Eight);
         assert_eq!(refused.expect_err("refused").exit_code(), 2);
-        for text in ["axial", "coronal", "sagittal", "1,0,-0.5"] {
-            let plane: Plane = text.parse().expect("a plane");
-            assert_eq!(plane.to_string(), text);
+        for text in [
+            "axial",
+            "coronal",
+            "sagittal",
+            "1,0,-0.5",
+            "axial,coronal,sagittal",
+        ] {
+            let planes: Planes = text.parse().expect("planes");
+            assert_eq!(planes.to_string(), text);
         }
-        assert!("flat".parse::<Plane>().is_err());
+        for text in [
+            "flat",
+            "axial,flat",
+            "axial,1,0,0",
+            "axial,axial,axial,axial,axial",
+        ] {
+            assert!(text.parse::<Planes>().is_err(), "{text}");
+        }
     }
 }

@@ -113,4 +113,3 @@ pub(super) fn steepness<R: Real>(
         smallest_spacing: R::from_f32(frame.smallest_spacing),
     }
 }
-

@@ -101,7 +101,12 @@ impl<R: Real> ReferenceRays<'_, R> {
         if extinction == R::from_f64(0.0) {
             return [r, g, b, extinction];
         }
-        self.lit_by([r, g, b, extinction], place.p, place.ray_direction, gradient)
+        self.lit_by(
+            [r, g, b, extinction],
+            place.p,
+            place.ray_direction,
+            gradient,
+        )
     }
 }
 

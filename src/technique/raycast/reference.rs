@@ -77,7 +77,12 @@ pub fn radiance_of_slabs<R: Real>(
     let voxel = voxel_ray(frame, &pixel_ray(frame, pixel));
     let samples = march_slabs(frame, lattice, pixel, value_at, |ends, segment| {
         let middle = voxel.at(segment.t);
-        gather(frame, &mut so_far, classify(SlabValues { ends, middle }), segment)
+        gather(
+            frame,
+            &mut so_far,
+            classify(SlabValues { ends, middle }),
+            segment,
+        )
     });
     (so_far, samples)
 }

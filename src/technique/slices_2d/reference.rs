@@ -6,9 +6,7 @@ use crate::real::Real;
 use crate::shaders::Frame;
 use crate::technique::Filter;
 use crate::technique::blend::Fragment;
-use crate::technique::reference::{
-    Gathered, Samples, SlabValues, composited, moved, projected,
-};
+use crate::technique::reference::{Gathered, Samples, SlabValues, composited, moved, projected};
 
 /// What the slices of a pixel gather.
 pub(crate) fn pixel<R: Real>(of: &impl Samples<R>, pixel: [R; 2]) -> Gathered<R> {

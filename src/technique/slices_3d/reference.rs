@@ -5,9 +5,7 @@ use crate::ray::{domain_interval, pixel_ray, plane_length, plane_t, voxel_ray};
 use crate::real::Real;
 use crate::shaders::Frame;
 use crate::technique::blend::Fragment;
-use crate::technique::reference::{
-    Gathered, Samples, SlabValues, composited, moved, projected,
-};
+use crate::technique::reference::{Gathered, Samples, SlabValues, composited, moved, projected};
 use std::cmp::Ordering;
 
 /// What the slices of a pixel gather.

@@ -330,7 +330,13 @@ demand them: the largest numbers in their place are a warning.";
         let is_largest = wanted.is_infinite() && found == wanted.signum() * f64::from(f32::MAX);
         let accepted = if is_largest { found } else { wanted };
         measurement.take(at, accepted, found, 0.0);
-        measurement.prefer("infinities become the largest numbers", at, wanted, found, 0.0);
+        measurement.prefer(
+            "infinities become the largest numbers",
+            at,
+            wanted,
+            found,
+            0.0,
+        );
     }
     Ok(measurement)
 }
