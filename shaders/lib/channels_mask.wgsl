@@ -25,16 +25,23 @@ fn channel_has_data(channel: u32, place: Place) -> bool {
     }
 }
 
+// The same of a label map, whose values are those of single voxels: without a loop, which some drivers count.
+fn label_is_there(channel: u32, place: Place) -> bool {
+    return is_in_channel(channel, place)
+        && (frame.channel_has_holes[channel] == 0u || label_mark(channel, place) != 0u);
+}
+
 // Labels lie in a channel after the first, where they have data.
 fn channel_is_dimmed(channel: u32, place: Place) -> bool {
-    if frame.channel_has_holes[channel] == 0u {
-        return false;
-    }
+    return frame.channel_has_holes[channel] != 0u && channel != 0u && label_mark(channel, place) == DIMMED;
+}
+
+fn label_mark(channel: u32, place: Place) -> u32 {
     let footprint = channel_footprint(channel, place);
     switch channel {
-        case 0u: { return false; }
-        case 1u: { return mark_of(validity_1, footprint) == DIMMED; }
-        case 2u: { return mark_of(validity_2, footprint) == DIMMED; }
-        default: { return mark_of(validity_3, footprint) == DIMMED; }
+        case 0u: { return mark_of(validity, footprint); }
+        case 1u: { return mark_of(validity_1, footprint); }
+        case 2u: { return mark_of(validity_2, footprint); }
+        default: { return mark_of(validity_3, footprint); }
     }
 }

@@ -76,6 +76,7 @@ impl Function {
             turns: crate::technique::Functions {
                 points: function.map_or(0, |f| f.color.len().max(f.opacity.len())),
                 second: gradient_transfer.is_some_and(GradientTransfer::needs_second),
+                labels: 0,
             },
             uploaded: Uploaded::default(),
         })

@@ -37,7 +37,7 @@ use crate::scene::{Beside, Scene, positions_in_pixel};
 use crate::technique::cost::ms_of_fetches;
 use crate::technique::gather::{CanvasDesc, PICTURE};
 use crate::technique::{
-    self, Functions, GpuChannel, InPixel, LightPlan, LightVolume, Mode, SampleInputs,
+    self, Functions, GpuChannel, InPixel, LightPlan, LightVolume, Mode, Role, SampleInputs,
     ShaderVariant, parameter_ring,
 };
 use crate::transfer::{GradientTransfer, TransferFunction};
@@ -338,6 +338,10 @@ impl<'v> Renderer<'v> {
         let functions = Functions {
             points: points.unwrap_or(0),
             second: gradient_transfer.is_some_and(GradientTransfer::needs_second),
+            labels: parts
+                .iter()
+                .filter(|part| part.role == Role::Labels)
+                .count(),
         };
         scene.view(&scene.volume.grid(), [0.0; 2]).check_turns(
             &variant,

@@ -6,8 +6,8 @@
 //! ```
 //!
 //! for n volumes: the sample itself, the search for it, what is left out on the way; with one look, or two where
-//! there are slabs, 6 more where a gradient is made of differences, 14 where it is that of labels, and 28 (with the turn that
-//! ends them) where there is a second derivative. A mask goes round for the layers and rows of the footprint, a kernel for those of its taps, a
+//! there are slabs, 6 more where a gradient is made of differences, and 28 (with the turn that ends them) where there is a second
+//! derivative; labels have one, and 14 where they are lit. A mask goes round for the layers and rows of the footprint, a kernel for those of its taps, a
 //! search for the halvings of the points, light for lamps and for the corners of a cell of the light volume. Clip
 //! planes are gone over once a ray, and once more for cut faces.
 
@@ -23,6 +23,8 @@ pub struct Functions {
     pub points: usize,
     /// Whether one asks for second derivatives.
     pub second: bool,
+    /// How many of the volumes are label maps: one voxel is looked at there, without a loop around it.
+    pub labels: usize,
 }
 
 /// How often the loops of one sample go round, at most.
@@ -61,8 +63,6 @@ pub fn turns_per_sample(
         1
     };
     let of_gradient = match has_gradient {
-        // Labels have eight corners more.
-        true if volumes > 1 => 14,
         true if !is_weighted && !are_kept => 6,
         _ => 0,
     };
@@ -89,7 +89,11 @@ pub fn turns_per_sample(
     };
     // Channels are gone over when they are asked for data, looked at and classified.
     let of_each = if volumes > 1 { 3 } else { 0 };
-    3 + volumes as u64 * (of_each + fetches * (1 + mask + filter) + weights + search + light)
+    let of_numbers = fetches * (1 + mask + filter) + weights;
+    let of_labels = 1 + mask + if has_gradient { 14 } else { 0 };
+    let [labels, volumes] = [functions.labels, volumes].map(|n| n as u64);
+    let numbers = volumes.saturating_sub(labels);
+    3 + volumes * (of_each + search + light) + numbers * of_numbers + labels * of_labels
 }
 
 impl View<'_> {

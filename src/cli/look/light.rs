@@ -1,6 +1,6 @@
 //! Light, samples and background of `--look auto`.
 //!
-//! Two samples a voxel in stills, one in films.
+//! Two samples a voxel in stills, one in films and of several volumes that are lit.
 
 use crate::cli::flags::{
     Background, Classification, Depth, LightWord, Numbers, SceneFlags, ShadingWord,
@@ -74,7 +74,9 @@ pub fn with_light(scene: &SceneFlags, seen: Seen, made_for: Use) -> SceneFlags {
     let is_splatted = sampling
         .technique
         .is_some_and(|technique| technique.splats());
-    if !made_for.is_film && is_plain && sampling.has_steps() && !is_splatted {
+    // Each of several volumes has a gradient at each sample: one lit sample shows the shape that two would.
+    let is_lit_mixture = seen.is_beside_others && chosen.light.shading.is_some();
+    if !made_for.is_film && is_plain && sampling.has_steps() && !is_splatted && !is_lit_mixture {
         sampling.samples_per_voxel.get_or_insert(STILL_SAMPLES);
     }
     chosen
