@@ -106,7 +106,7 @@ fn a_field_that_rises_evenly_is_lit_as_the_function_of_lit_colors_is_drawn() {
             let diffuse = shading.diffuse * normal.dot(towards).abs();
             let specular = shading.specular * normal.dot(halfway).abs().powf(shading.shininess);
             for c in 0..3 {
-                sum[c] += f64::from(light.srgb[c]) * (diffuse * color[c] + specular);
+                sum[c] += light.srgb[c] * (diffuse * color[c] + specular);
             }
         }
         let surface = gradient / (gradient + shading.half_gradient);
