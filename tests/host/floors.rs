@@ -14,7 +14,7 @@ const FLOORS: &[&[&str]] = &[
     &[
         "gpu", "volume", "transfer", "camera", "picture", "mesh", "figure",
     ],
-    &["points"],
+    &["points", "flow"],
     &["resident", "isosurface", "format"],
     &["technique"],
     &["resolve", "look"],
@@ -42,6 +42,7 @@ const FREE_OF_VULKAN: &[&str] = &[
     "mesh",
     "figure",
     "points",
+    "flow",
     "isosurface",
     "format",
     "scene",
