@@ -210,12 +210,14 @@ pub struct Controller {
 /// An error under this part of the tolerance is as good as none.
 const LEAST: f64 = 1e-10;
 
-impl Controller {
+impl Default for Controller {
     /// Before the first step.
-    pub fn new() -> Self {
+    fn default() -> Self {
         Self { before: 1e-4 }
     }
+}
 
+impl Controller {
     /// How much longer the step after an accepted one may be.
     pub fn growth(&mut self, error: f64) -> f64 {
         let factor = 0.9 * error.max(LEAST).powf(-0.17) * self.before.powf(0.04);

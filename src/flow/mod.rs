@@ -1,13 +1,41 @@
-//! Stream, path and streak lines of a velocity field.
+//! Stream and path lines of a velocity field.
 //!
 //! ```text
 //! dx/dt = v(t, x)
 //! stream line    the solution with t held in v: tangent to the velocity of one instant
 //! path line      the solution: the way of one particle
-//! streak line    where particles are now that passed one place, one after the other
 //! ```
 //!
 //! Places are those of the drawn world before heights are exaggerated. Knows nothing of files that it reads, and nothing
 //! of Vulkan.
+//!
+//! ```
+//! use glam::DVec3;
+//! use stratavox::flow::{Direction, GridField, Limits, Metric, Snapshot, stream_lines};
+//! use stratavox::volume::Grid;
+//!
+//! let grid = Grid { dims: [8; 3], world_from_voxel: glam::DAffine3::IDENTITY };
+//! let wind = Snapshot::from_fn(&grid, |_| Some([2.0, 0.0, 0.0]));
+//! let field = GridField::new(grid, vec![(0.0, wind)], Metric::plain(1.0))?;
+//! let lines = stream_lines(&field, 0.0, &[DVec3::splat(4.0)], Direction::Both, &Limits::default());
+//! assert_eq!(lines[0].vertices[0].place.y, 4.0);
+//! # Ok::<(), stratavox::flow::FieldError>(())
+//! ```
 
-pub mod dormand_prince;
+mod atmosphere;
+mod dormand_prince;
+mod error;
+mod field;
+mod grid_field;
+mod line;
+mod metric;
+mod snapshot;
+mod trace;
+
+pub use error::FieldError;
+pub use field::{Absence, Frozen, VectorField};
+pub use grid_field::GridField;
+pub use line::{Direction, End, Limits, Line, Vertex};
+pub use metric::{Horizontal, Metric, Vertical};
+pub use snapshot::{Component, Snapshot};
+pub use trace::{path_lines, stream_lines};

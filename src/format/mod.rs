@@ -34,7 +34,7 @@ mod data;
 mod decode;
 #[cfg(feature = "dicom")]
 mod dicom;
-mod earth;
+pub(crate) mod earth;
 #[cfg(any(feature = "grib", feature = "netcdf"))]
 mod fence;
 mod file_source;
