@@ -80,7 +80,6 @@ static void settings(void) {
     WITH(sv_settings, lit, specular, inf, SV_E_ARGUMENT);
     WITH(sv_settings, lit, shininess, -3.0, SV_E_ARGUMENT);
     WITH(sv_settings, lit, mode, SV_MODE_MIP, SV_E_UNSUPPORTED);
-    WITH(sv_settings, lit, is_preintegrated, 1, SV_E_UNSUPPORTED);
     sv_settings sliced = start;
     sliced.technique = SV_TECHNIQUE_SLICES_3D;
     WITH(sv_settings, sliced, mode, SV_MODE_MIDA, SV_E_UNSUPPORTED);
