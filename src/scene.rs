@@ -1,5 +1,9 @@
 //! Everything that makes one picture.
 
+mod labels_over;
+
+pub(crate) use labels_over::LabelsOver;
+
 use crate::camera::Camera;
 use crate::points::Points;
 use crate::shaders::MAX_CHANNELS;
@@ -145,6 +149,15 @@ impl<'a> Scene<'a> {
     /// [`Error::NotOccluded`], [`Error::NotOccludedTogether`], [`Error::FilterAlone`], [`Error::OpacityOfNothing`],
     /// [`Error::NotFor`] and those of [`Settings::check`].
     pub fn check(&self) -> Result<(), Error> {
+        let labels = self.labels_over();
+        if !labels.is_empty() {
+            // Crop boxes are those of voxels.
+            let grid = self.volume.grid();
+            if labels.iter().any(|map| map.volume.grid() != grid) {
+                return Err(Error::OtherGrid);
+            }
+            return self.under_labels().check();
+        }
         let volumes = self.volumes();
         let (wanted, limit) = (volumes.len(), MAX_CHANNELS as usize);
         let grid = self.volume.grid();

@@ -6,15 +6,17 @@ use super::{
 };
 use crate::{
     format,
-    technique::Role,
+    technique::{Mode, Role},
     transfer::{LIT_LABEL_OPACITY, LabelTable, TransferFunction},
     volume::{
-        Grid, TimeComponent, Volume, VolumeSelection, is_same_grid,
+        Grid, Rescale, TimeComponent, Volume, VolumeSelection, Voxels, is_same_grid,
         labels::{dim, hide, labels_of, on_grid},
     },
 };
 use glam::DVec3;
 
+/// What is left of the opacity of labels that lie over a picture: both are seen.
+pub const LABEL_OVER_OPACITY: f64 = 0.5;
 /// Names that are said, at most.
 const NAMES: usize = 4;
 /// More unnamed labels than atlases have: numbers that were measured, perhaps.
@@ -26,6 +28,7 @@ pub fn read(
     scene: &SceneFlags,
     grid: &Grid,
     height_factor: f64,
+    mode: Mode,
     progress: &Progress,
 ) -> Result<Other, Error> {
     let flags = &scene.labels;
@@ -60,8 +63,16 @@ pub fn read(
     } else {
         let mut table = table.clone().unwrap_or_default();
         let lit = scene.is_auto().then_some(LIT_LABEL_OPACITY);
-        table.opacity = table.opacity.or(flags.label_opacity).or(lit);
-        table.function(present.keys().copied(), diagonal(&map))
+        let of_composite = table.opacity.or(flags.label_opacity).or(lit);
+        let is_over = mode != Mode::Composite;
+        table.opacity = if is_over { Some(1.0) } else { of_composite };
+        let mut function = table.function(present.keys().copied(), diagonal(&map));
+        if is_over {
+            let share = flags.label_opacity.unwrap_or(LABEL_OVER_OPACITY);
+            let points = function.opacity.iter_mut();
+            points.for_each(|point| point.opacity *= share);
+        }
+        function
     };
     say_names(&present, table.as_ref(), &function, progress);
     let hides = table.as_ref().is_some_and(|table| table.hides);
@@ -79,6 +90,30 @@ pub fn read(
         function,
         role: Role::Labels,
     })
+}
+
+/// Hides in `volume` what the map hides: modes but composite show what is left.
+pub fn hide_in(volume: &mut Volume, map: &Volume) {
+    let Some(shown) = &map.validity else {
+        return;
+    };
+    let hidden = Volume {
+        voxels: Voxels::U8(shown.iter().map(|mark| u8::from(*mark == 0)).collect()),
+        rescale: Rescale::default(),
+        validity: None,
+        unit: None,
+        ..*map
+    };
+    // Beyond the map nothing is hidden.
+    let (hidden, _) = on_grid(&hidden, &volume.grid());
+    let mut mask = volume.validity.take();
+    let marks = mask.get_or_insert_with(|| vec![1; hidden.voxels.len()]);
+    for (i, mark) in marks.iter_mut().enumerate() {
+        if hidden.voxels.stored(i) != 0.0 {
+            *mark = 0;
+        }
+    }
+    volume.validity = mask;
 }
 
 /// World length of the diagonal of the grid.

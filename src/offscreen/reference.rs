@@ -12,7 +12,7 @@ use super::sum::sum_of;
 use crate::picture::Picture;
 use crate::real::{Real, scale};
 use crate::resolve::reference::{light_at, premultiplied};
-use crate::scene::{Beside, Scene, positions_in_pixel};
+use crate::scene::{Beside, LabelsOver, Scene, positions_in_pixel};
 use crate::shaders::Frame;
 use crate::technique::composite::Composite;
 use crate::technique::faces::{FACE_LENGTH, cut_face, on_face};
@@ -43,6 +43,18 @@ pub(super) use normals::normals;
 /// Those of the parameters, too many samples or clip planes, and of volumes that cannot be put together.
 pub fn render<R: Real>(scene: &Scene) -> Result<Picture, Error> {
     scene.check()?;
+    let labels = scene.labels_over();
+    let mut picture = render_unlabeled::<R>(&scene.under_labels())?;
+    for map in labels {
+        if let Some(over) = LabelsOver::new(scene, map) {
+            over.lay(scene, map, &mut picture, render_one::<R>)?;
+        }
+    }
+    Ok(picture)
+}
+
+/// The same without labels over it.
+fn render_unlabeled<R: Real>(scene: &Scene) -> Result<Picture, Error> {
     let stacks = stacks_of(scene);
     if !stacks.is_empty() {
         return faded(stacks.iter().map(|(settings, share)| {

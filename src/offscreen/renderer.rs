@@ -33,7 +33,7 @@ use super::upload::{keep, upload, upload_with_gradient_source};
 use crate::gpu::{Headless, ParameterRing, Timer};
 use crate::picture::{ColorSpace, LayerKind, Picture};
 use crate::resident::{GpuTransfer, GpuVolume};
-use crate::scene::{Beside, Scene, positions_in_pixel};
+use crate::scene::{Beside, LabelsOver, Scene, positions_in_pixel};
 use crate::technique::cost::ms_of_fetches;
 use crate::technique::gather::{CanvasDesc, PICTURE};
 use crate::technique::{
@@ -146,6 +146,7 @@ impl<'v> Renderer<'v> {
     /// Where something is over a limit of the device.
     pub fn upload(&mut self, scene: &Scene) -> Result<(), Error> {
         scene.check()?;
+        let scene = &scene.under_labels();
         let settings = &decided(self.device.gpu(), scene);
         let scene = &Scene { settings, ..*scene };
         self.check_stream(scene)?;
@@ -213,6 +214,8 @@ impl<'v> Renderer<'v> {
         scene: &Scene,
         prepare: impl FnOnce(&mut Self, &Scene) -> Result<(), Error>,
     ) -> Result<(), Error> {
+        scene.check()?;
+        let scene = &scene.under_labels();
         let settings = &decided(self.device.gpu(), scene);
         let scene = &Scene { settings, ..*scene };
         let is_sum = scene.mix() == SampleInputs::Channels && scene.settings.mode.is_projection();
@@ -228,6 +231,33 @@ impl<'v> Renderer<'v> {
     /// # Errors
     /// Parameters out of range, a limit of the device, a layer that the technique does not have.
     pub fn render(&mut self, scene: &Scene, layers: &[LayerKind]) -> Result<Rendered, Error> {
+        scene.check()?;
+        let labels = scene.labels_over();
+        if labels.is_empty() {
+            return self.render_unlabeled(scene, layers);
+        }
+        let under = scene.under_labels();
+        let first = under.volumes().len();
+        let mut rendered = self.render_unlabeled(&under, layers)?;
+        let mut clock = Clock(rendered.gpu_ms);
+        for (shown, map) in (first..).zip(labels) {
+            let Some(over) = LabelsOver::new(scene, map) else {
+                continue;
+            };
+            self.shown = shown;
+            let laid = over.lay(scene, map, &mut rendered.picture, |labels| {
+                self.upload(labels)?;
+                self.picture(labels, &[], &mut clock)
+            });
+            self.shown = 0;
+            laid?;
+        }
+        rendered.gpu_ms = clock.0;
+        Ok(rendered)
+    }
+
+    /// The same without labels over it.
+    fn render_unlabeled(&mut self, scene: &Scene, layers: &[LayerKind]) -> Result<Rendered, Error> {
         check_layers(scene, layers)?;
         let settings = &decided(self.device.gpu(), scene);
         let scene = &Scene { settings, ..*scene };

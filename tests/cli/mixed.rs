@@ -170,6 +170,42 @@ fn labels_lie_over_a_volume_and_cut_it() {
 }
 
 #[test]
+fn labels_lie_over_sections_and_projections_and_cut_them() {
+    let folder = Folder::new();
+    folder.file("v.nrrd", nrrd("", 1, 1.0, |i| vec![100 + (i % 60) as u8]));
+    folder.file("l.nrrd", nrrd("", 1, 1.0, |i| vec![u8::from(i % 6 >= 3)]));
+    folder.file("l.txt", "1 255 0 0 1 1 1 \"right half\"\n");
+    let red = |p: &Picture| p.pixels.iter().filter(|p| p[0] - p[1] > 0.05).count();
+    for words in ["--section coronal", "--mode mip", "--mode iso --iso 90"] {
+        let of = |more: &str| picture(&folder, &format!("v.nrrd {words} {more}")).0;
+        let over = "--labels l.nrrd --label-tf l.txt";
+        let [plain, half, whole, none] = [
+            "",
+            over,
+            &format!("{over} --label-opacity 1"),
+            &format!("{over} --label-opacity 0"),
+        ]
+        .map(of);
+        assert_eq!(red(&plain), 0, "{words}");
+        assert_eq!(none.pixels, plain.pixels, "{words}");
+        assert!(red(&half) > 10 && red(&half) == red(&whole), "{words}");
+        for (i, plain) in plain.pixels.iter().enumerate() {
+            for c in 0..4 {
+                let mean = 0.5 * (plain[c] + whole.pixels[i][c]);
+                assert!((half.pixels[i][c] - mean).abs() < 1e-5, "{words}");
+            }
+        }
+    }
+    let of = |words: &str| picture(&folder, &format!("v.nrrd --mode mip {words}")).0;
+    let [whole, left] = ["", "--labels l.nrrd --label-hide 1"].map(of);
+    assert!(
+        drawn(&left) > 10 && drawn(&left) < drawn(&whole),
+        "half is hidden"
+    );
+    assert_eq!(red(&left), 0, "no label is drawn");
+}
+
+#[test]
 fn labels_are_dimmed_by_words_and_by_their_file() {
     let folder = Folder::new();
     folder.file("v.nrrd", nrrd("", 1, 1.0, |i| vec![100 + (i % 60) as u8]));
@@ -253,6 +289,8 @@ fn a_scene_keeps_channels_and_labels() {
     folder.file("l.nrrd", nrrd("", 1, 1.0, |i| vec![(i % 3) as u8]));
     for words in [
         "v.nrrd --labels l.nrrd --label-hide 2",
+        "v.nrrd --labels l.nrrd --mode mip",
+        "v.nrrd --labels l.nrrd --section coronal --label-opacity 0.3",
         "phantom:cells,n=12 --channel 2,color=orange --channel 0,window=0:0.5",
         "phantom:cells,n=12 --component all",
     ] {
@@ -303,9 +341,9 @@ fn words_that_do_not_go_together_are_refused_by_name() {
         ("rgb.nrrd --preset mri", 2, &["--preset"]),
         ("rgb.nrrd --labels v.nrrd", 2, &["--labels"]),
         (
-            "v.nrrd --labels v.nrrd --mode mip",
+            "v.nrrd --labels v.nrrd --label-dim 1 --mode mip",
             2,
-            &["--labels", "composite"],
+            &["--label-dim", "composite", "--label-hide"],
         ),
         (
             "v.nrrd --labels v.nrrd --filter cubic",

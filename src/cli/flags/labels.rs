@@ -1,6 +1,6 @@
 //! A label map that lies over a volume, or cuts parts out of it: the words.
 
-use super::Error;
+use super::{Error, numbers::share};
 use crate::{
     cli::small_file,
     technique::DEFAULT_DIM,
@@ -21,7 +21,8 @@ const HEADING: &str = "Labels";
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LabelFlags {
-    /// A label map of the same place: each label is drawn over the volume in a colour of its own
+    /// A label map of the same place: each label is drawn over the volume in a colour of its own; in modes but composite
+    /// the first label along each ray lies over the picture
     #[arg(long, value_name = "FILE", help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub labels: Option<PathBuf>,
@@ -42,8 +43,9 @@ pub struct LabelFlags {
     #[arg(long, value_name = "N,A-B,...[:F]", help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub label_dim: Option<DimmedLabels>,
-    /// How opaque labels are that lie over a volume, where no table says it; what a scene keeps.
-    #[arg(skip)]
+    /// Opacity of labels, 0 to 1. Over a section or a projection it multiplies that of the table [default: 0.5]; in
+    /// composites labels have it where no table says one, per 1/512 of the diagonal [default: 0.05, lit 0.15]
+    #[arg(long, value_name = "A", value_parser = share, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub label_opacity: Option<f64>,
 }

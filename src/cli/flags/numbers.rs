@@ -145,6 +145,14 @@ pub fn finite(text: &str) -> Result<f64, String> {
         .ok_or_else(|| format!("wanted a number, found {text:?}"))
 }
 
+/// A number from 0 to 1.
+pub fn share(text: &str) -> Result<f64, String> {
+    finite(text).and_then(|number| match (0.0..=1.0).contains(&number) {
+        true => Ok(number),
+        false => Err(format!("wanted a number from 0 to 1, found {text}")),
+    })
+}
+
 /// A finite number over 0.
 pub fn positive(text: &str) -> Result<f64, String> {
     finite(text).and_then(|number| {

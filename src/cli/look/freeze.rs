@@ -5,6 +5,7 @@ use crate::cli::flags::{
     ChannelWord, Classification, ClassificationFlags, ColorWord, Look, SceneFlags, ShadingWord,
     WindowWord, inlined,
 };
+use crate::cli::labels::LABEL_OVER_OPACITY;
 use crate::cli::scene_inputs::SceneInputs;
 use crate::scene::{Beside, Channel};
 use crate::technique::{Filter, Level, Mode, Role};
@@ -73,7 +74,9 @@ impl<'a> Chosen<'a> {
         if let (Some(filter), true) = (self.filter, self.function.is_some()) {
             scene.sampling.filter.get_or_insert(filter);
         }
-        if scene.is_auto() && scene.labels.labels.is_some() {
+        if scene.labels.labels.is_some() && self.mode != Mode::Composite {
+            scene.labels.label_opacity.get_or_insert(LABEL_OVER_OPACITY);
+        } else if scene.is_auto() && scene.labels.labels.is_some() {
             scene.labels.label_opacity.get_or_insert(LIT_LABEL_OPACITY);
         }
         self.keep_colors(&mut scene);

@@ -4,6 +4,7 @@ use super::{Other, Others, Reader, SceneInputs, fade, says_nothing};
 use crate::cli::flags::Classification;
 use crate::cli::{Error, labels};
 use crate::technique::Mode;
+use std::sync::Arc;
 
 impl SceneInputs {
     /// The same with all of it. A volume whose function no word names is drawn faint where something lies inside of it.
@@ -21,10 +22,19 @@ impl SceneInputs {
             is_hiding = reader.mode == Mode::Composite;
         }
         if scene.labels.labels.is_some() {
+            let map = labels::read(scene, &grid, height_factor, reader.mode, reader.progress)?;
+            if reader.mode == Mode::Composite {
+                let mut opacities = map.function.opacity.iter();
+                is_hiding |= opacities.any(|point| point.opacity > 0.0);
+            } else {
+                labels::hide_in(Arc::make_mut(&mut self.volume), &map.volume);
+            }
             let others = self.others_for("--labels")?;
-            let map = labels::read(scene, &grid, height_factor, reader.progress)?;
-            let mut opacities = map.function.opacity.iter();
-            is_hiding |= opacities.any(|point| point.opacity > 0.0);
+            if reader.mode != Mode::Composite {
+                others
+                    .iter_mut()
+                    .for_each(|other| labels::hide_in(&mut other.volume, &map.volume));
+            }
             others.push(map);
         }
         let is_plain = says_nothing(&scene.classification)? && !scene.opacity.are_given();

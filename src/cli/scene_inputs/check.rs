@@ -16,13 +16,14 @@ pub(super) fn plan(scene: &SceneFlags, header: &Header) -> Result<(Plan, Option<
 /// True where more than one number a voxel is seen.
 pub fn shows_several(scene: &SceneFlags, header: &Header) -> Result<bool, Error> {
     let (plan, _) = plan(scene, header)?;
-    Ok(plan != Plan::One || has_beside(scene))
+    let mode = scene.sampling.mode.unwrap_or_default();
+    let has_labels = scene.labels.labels.is_some();
+    Ok(plan != Plan::One || has_labels || has_beside(scene, mode))
 }
 
-/// True where words name something that is seen together with the volume.
-pub(super) fn has_beside(scene: &SceneFlags) -> bool {
-    let mode = scene.sampling.mode.unwrap_or_default();
-    scene.labels.labels.is_some()
+/// True where words name something that is mixed with the volume, sample by sample. Labels are in composites alone.
+pub(super) fn has_beside(scene: &SceneFlags, mode: Mode) -> bool {
+    (scene.labels.labels.is_some() && mode == Mode::Composite)
         || !scene.with.with.is_empty()
         || scene.modes.paint(mode).is_some()
         || scene.opacity.are_given()
@@ -78,10 +79,11 @@ fn check_with(scene: &SceneFlags, mode: Mode) -> Result<(), Error> {
 fn check_in(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
     let mode = settings.mode;
     scene.modes.check(settings)?;
-    if scene.labels.labels.is_some() && mode != Mode::Composite {
+    if scene.labels.labels.is_some() && scene.labels.label_dim.is_some() && mode != Mode::Composite
+    {
         return Err(Error::usage(
-            "--labels needs --mode composite: the others have no place for labels",
-            "leave out --mode or --labels",
+            "--label-dim needs --mode composite: others cannot make a part of a ray faint",
+            "--label-hide leaves it out",
         ));
     }
     check_with(scene, mode)?;

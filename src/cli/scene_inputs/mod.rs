@@ -199,7 +199,7 @@ impl SceneInputs {
                 "take one of them: --component 0",
             ));
         }
-        let is_alone = plan == Plan::One && !has_beside(scene);
+        let is_alone = plan == Plan::One && !has_beside(scene, settings.mode);
         let are_several = !is_alone;
         if are_several && !settings.mode.is_projection() && settings.filter.kernel().is_some() {
             let filter = scene.sampling.filter.unwrap_or_default();

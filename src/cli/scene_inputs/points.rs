@@ -27,7 +27,8 @@ pub fn read(scene: &SceneFlags, mode: Mode, progress: &Progress) -> Result<Scene
             "leave it out",
         ));
     }
-    let of_volumes = has_beside(scene)
+    let of_volumes = scene.labels.labels.is_some()
+        || has_beside(scene, mode)
         || scene.channels.are_given()
         || scene.input.component.is_some()
         || scene.denoise.is_some()

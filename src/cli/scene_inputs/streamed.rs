@@ -24,7 +24,7 @@ pub fn is_wanted(
     let header = source.header();
     let what = match () {
         () if plan(scene, header)?.0 != Plan::One => Some("several numbers a voxel"),
-        () if has_beside(scene) => {
+        () if scene.labels.labels.is_some() || has_beside(scene, settings.mode) => {
             Some("--with, --labels and what else is seen together with a volume")
         }
         () if scene.denoise.is_some() => Some("--denoise"),

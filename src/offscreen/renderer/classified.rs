@@ -16,6 +16,7 @@ impl Renderer<'_> {
     /// # Errors
     /// Where no function says what samples are made of, or the device gives no memory.
     pub fn prepare_light(&mut self, scene: &Scene) -> Result<(), Error> {
+        let scene = &scene.under_labels();
         let grid = scene.volume.grid();
         let view = scene.view(&grid, [0.0; 2]);
         let plan = view.light_plan()?;
