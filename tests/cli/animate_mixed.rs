@@ -94,6 +94,28 @@ fn keyframes_move_camera_and_planes_around_colours_and_labels() {
 }
 
 #[test]
+fn a_film_of_times_shows_what_lies_beside_as_pictures_of_each_time_do() {
+    let folder = Folder::new();
+    labels(&folder, "l.nrrd", |i| u8::from(i % 6 >= 3));
+    let storm = "phantom:storm,n=12,variable=vapor,times=2";
+    for words in [
+        "--labels l.nrrd --window 0,9",
+        "--with phantom:storm,n=12,variable=cloud,times=2,color=white --window 0,9",
+        "--labels l.nrrd --mode mip --window 0,9",
+    ] {
+        folder
+            .run(&format!(
+                "animate --look plain {storm} {words} --times -o t%d.png {SMALL} --force"
+            ))
+            .assert_done();
+        for time in [0, 1] {
+            let words = format!("{storm} {words} --time {time}");
+            assert_frame_is(&folder, &format!("t{time}.png"), &words);
+        }
+    }
+}
+
+#[test]
 fn what_several_numbers_cannot_do_in_a_film_is_refused_by_name() {
     let folder = Folder::new();
     nrrd(&folder, "v.nrrd", "", "", 1);
@@ -103,19 +125,19 @@ fn what_several_numbers_cannot_do_in_a_film_is_refused_by_name() {
         "w.json",
         r#"{"stratavox_keyframes":1,"frames":2,"keys":[{"at":0,"window":[0,9]}]}"#,
     );
+    folder.file(
+        "half.json",
+        r#"{"stratavox_keyframes":1,"frames":3,"keys":[{"at":0,"time":0},{"at":2,"time":1}]}"#,
+    );
     let before = folder.names();
     for (words, said) in [
         (
-            "phantom:storm,n=8,variable=u,times=2 --labels l.nrrd --times",
-            &["several times", "--labels", "--time N"][..],
-        ),
-        (
             "phantom:storm,n=8,variable=u,times=2 --label-tf l.txt --times",
-            &["several times", "--label-tf"],
+            &["--label-tf", "--time N"][..],
         ),
         (
-            "phantom:storm,n=8,variable=u,times=2 --channels 0 --times",
-            &["several times", "several channels"],
+            "phantom:storm,n=8,variable=u,times=2 --with v.nrrd --keyframes half.json",
+            &["frame 1", "time 0.5", "--times"],
         ),
         (
             "phantom:cells,n=8 --keyframes w.json",
@@ -130,8 +152,8 @@ fn what_several_numbers_cannot_do_in_a_film_is_refused_by_name() {
             &["--preset", "--channel 0"],
         ),
         (
-            "v.nrrd --labels l.nrrd --mode mip --turntable 2",
-            &["--labels", "--mode composite"],
+            "v.nrrd --labels l.nrrd --label-dim 1 --mode mip --turntable 2",
+            &["--label-dim", "--mode composite"],
         ),
     ] {
         let ran = folder.run(&format!("animate --look plain {words} -o a.gif {SMALL}"));

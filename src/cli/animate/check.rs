@@ -33,10 +33,19 @@ pub fn several(scene: &SceneFlags, header: &Header, shots: &[FilmFrame]) -> Resu
         ));
     }
     let several = scene_inputs::shows_several(scene, header)?;
-    if !is_still && (several || scene.labels.label_tf.is_some()) {
+    if several && let Some(number) = shots.iter().position(is_between) {
+        let time = shots[number].time;
         return Err(Error::usage(
-            "several times are shown of one number a voxel, without colours, several channels, --with, --labels and --label-tf",
-            "--time N takes one time, --component N one number",
+            format!(
+                "frame {number} shows time {time}, and between times one number a voxel is mixed: several are drawn"
+            ),
+            "whole times: --times; or one number: --component N, without --with and --labels",
+        ));
+    }
+    if !is_still && !several && scene.labels.label_tf.is_some() {
+        return Err(Error::usage(
+            "--label-tf: labels of INPUT are drawn of one time",
+            "--time N takes one time; --labels FILE lays a map over all of them",
         ));
     }
     let is_same = |shot: &FilmFrame| shot.classification == scene.classification;

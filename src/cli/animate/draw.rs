@@ -10,6 +10,7 @@ use super::{
     ready::{self, Ready},
     shots::{Film, FilmFrame},
     store::Store,
+    together::Together,
     volumes::{Moment, Volumes},
 };
 use crate::{
@@ -77,6 +78,8 @@ pub struct Drawing<'a> {
 pub enum Content {
     /// One time, of everything that `render` draws.
     Still(Box<SceneInputs>),
+    /// Several times of the same, of which this is the first.
+    Together(Box<SceneInputs>, Together),
     /// Several times of one number a voxel; with the device's memory, drawn brick by brick from their file.
     Times(Arc<dyn Source>, Option<DeviceMemory>),
 }
@@ -119,6 +122,7 @@ impl Drawing<'_> {
                 let moment = Arc::new(Moment {
                     volume: Arc::clone(&shown.volume),
                     streamed: shown.stream().map(|stream| (stream.clone(), None)),
+                    together: None,
                 });
                 let first = |_: &[Ready]| Ok(Arc::clone(&moment));
                 self.choose_window(&mut ready, first, &parts, &mut devices)?;
@@ -127,9 +131,24 @@ impl Drawing<'_> {
                 let work = self.work(wanted, &ready, &parts, &feed, &line)?;
                 self.run(&work, sink, devices, load_ms, None)
             }
+            Content::Together(shown, together) => {
+                let parts = shown.parts();
+                let all = self.kept.with_own(self.shots, self.film, self.scene);
+                let mut ready = ready::of_still(&all, self.scene, shown)?;
+                self.kept.take(&mut ready, self.shots.len());
+                let load_ms = ms_since(self.start);
+                let mut volumes = Volumes::together(together, self.scene, self.progress, &saw);
+                let first = |ready: &[Ready]| volumes.at(ready[0].time);
+                self.choose_window(&mut ready, first, &parts, &mut devices)?;
+                let times = times_of(&ready, wanted);
+                devices.truncate(1);
+                let feed = Feed::behind(volumes, &times);
+                let line = self.line(devices.len())?;
+                let work = self.work(wanted, &ready, &parts, &feed, &line)?;
+                self.run(&work, sink, devices, load_ms, None)
+            }
             Content::Times(source, bricks) => {
                 self.progress.stage("read", 0, 1);
-                let saw = |time, volume: &Volume| saw(time, &[volume]);
                 let mut volumes = Volumes::new(source, *bricks, self.scene, self.progress, &saw);
                 let is_labels = source.header().is_labels;
                 let all = self.kept.with_own(self.shots, self.film, self.scene);

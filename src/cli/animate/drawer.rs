@@ -81,12 +81,18 @@ impl Seen {
 
 impl Work<'_> {
     /// A job with the settings and colours of frame `number`.
-    pub fn job<'j>(&'j self, moment: &'j Moment, number: u32, layers: &'j [LayerKind]) -> Job<'j> {
+    pub fn job<'j>(
+        &'j self,
+        moment: &'j Moment,
+        parts: &'j Parts<'j>,
+        number: u32,
+        layers: &'j [LayerKind],
+    ) -> Job<'j> {
         let ready = &self.ready[number as usize];
         Job {
             volume: &moment.volume,
             stream: moment.stream(),
-            beside: self.parts.beside(),
+            beside: parts.beside(),
             classification: &ready.classification,
             settings: &ready.settings,
             extent_pixels: self.extent_pixels,
@@ -118,7 +124,9 @@ impl Work<'_> {
             *at = place;
             let moment = moment?;
             let camera = &self.drawing.shots[self.wanted[*at] as usize].camera;
-            let job = self.job(&moment, self.wanted[*at], self.drawing.layers);
+            let own = moment.parts();
+            let parts = own.as_ref().unwrap_or(self.parts);
+            let job = self.job(&moment, parts, self.wanted[*at], self.drawing.layers);
             let mut renderer = Renderer::new(job, camera, device)?;
             seen.upload_ms += renderer.upload_ms;
             seen.prepare_ms += renderer.prepare_ms;
@@ -145,6 +153,7 @@ impl Work<'_> {
             };
             seen.device_bytes = renderer.device_bytes();
             device = renderer.into_device();
+            drop(own);
             drop(moment);
             next = other.or_else(|| self.feed.next());
         }

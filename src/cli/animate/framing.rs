@@ -66,7 +66,9 @@ pub fn framed(
     let ready = match (content, known) {
         (Content::Times(..), Some(known)) => known,
         (Content::Times(..), None) => of_times(content, &shots, &scene)?,
-        (Content::Still(shown), _) => ready::of_still(&shots, &scene, shown)?,
+        (Content::Still(shown) | Content::Together(shown, _), _) => {
+            ready::of_still(&shots, &scene, shown)?
+        }
     };
     let extent_pixels = scene.picture.extent_pixels()?;
     let film = Fit {
@@ -121,13 +123,15 @@ fn lit(
         depth: plan.depth,
     };
     Ok(match content {
-        Content::Still(shown) => (with_light(&scene, shown.seen(), made_for), None),
+        Content::Still(shown) | Content::Together(shown, _) => {
+            (with_light(&scene, shown.seen(), made_for), None)
+        }
         Content::Times(..) if !scene.is_auto() => (scene, None),
         Content::Times(source, bricks) => {
             let shots = plan.film.shots(&scene, plan.depth, &plan.header, grid)?;
             let ready = of_times(content, &shots, &scene)?;
             let quiet = Progress::of_part();
-            let unseen = |_, _: &Volume| Ok(());
+            let unseen = |_, _: &[&Volume]| Ok(());
             let mut volumes = Volumes::new(source, *bricks, &scene, &quiet, &unseen);
             let moment = volumes.at(ready[0].time)?;
             progress.stage("prepare", 0, 1);
@@ -153,7 +157,7 @@ fn of_times(
         unreachable!("of several times");
     };
     let quiet = Progress::of_part();
-    let unseen = |_, _: &Volume| Ok(());
+    let unseen = |_, _: &[&Volume]| Ok(());
     let mut volumes = Volumes::new(source, *bricks, scene, &quiet, &unseen);
     let is_labels = source.header().is_labels;
     ready::of_times(shots, scene, is_labels, &mut volumes, &quiet)

@@ -85,12 +85,12 @@ impl Kept {
             _ => None,
         };
         let parts = match content {
-            Content::Still(shown) => shown.parts(),
+            Content::Still(shown) | Content::Together(shown, _) => shown.parts(),
             Content::Times(..) => Parts::Channels(Vec::new()),
         };
         // Those of the own frame lack the window of the flags.
         let per_mode = match content {
-            Content::Still(shown) => &shown.per_mode,
+            Content::Still(shown) | Content::Together(shown, _) => &shown.per_mode,
             Content::Times(..) => &settings.per_mode,
         };
         let mode = shots[0].settings.mode;
@@ -105,7 +105,7 @@ impl Kept {
             function,
             beside: parts.beside(),
             channels: match content {
-                Content::Still(shown) => shown.channels(),
+                Content::Still(shown) | Content::Together(shown, _) => shown.channels(),
                 Content::Times(..) => &[],
             },
             window,

@@ -23,6 +23,7 @@ mod shots;
 mod sphere;
 mod store;
 mod target;
+mod together;
 mod track;
 mod tracks;
 mod union;
@@ -61,6 +62,7 @@ use std::{
 };
 use store::{Store, Wishes};
 use target::{Frames, Target};
+use together::Together;
 
 /// Draw many pictures of a volume: a turn, its times, or a film by keyframes
 #[derive(Args, Debug)]
@@ -228,6 +230,17 @@ impl Animate {
                 let shown = SceneInputs::of_source(source, &scene, settings, device, progress)?;
                 Content::Still(Box::new(shown.at_level(&scene)))
             }
+            None if scene_inputs::shows_several(scene, header)? => {
+                progress.stage("read", 0, 1);
+                let settings = &shots[0].settings;
+                let mut first = scene.clone();
+                first.input.time = Some(shots[0].time.to_string());
+                let shown = SceneInputs::of_source(source, &first, settings, device, progress)?;
+                let shown = shown.at_level(&first);
+                progress.note("colours and windows are those of the first time");
+                let together = Together::new(scene, &shown, settings, device.memory()?);
+                Content::Together(Box::new(shown), together)
+            }
             None => {
                 let is_whole = shots.iter().all(|shot| shot.time.fract() == 0.0);
                 let held = if is_whole {
@@ -247,7 +260,9 @@ impl Animate {
         };
         // A volume that is reduced to fit has a grid of its own.
         let (grid, height_factor) = match &content {
-            Content::Still(shown) => (shown.volume.grid(), shown.height_factor),
+            Content::Still(shown) | Content::Together(shown, _) => {
+                (shown.volume.grid(), shown.height_factor)
+            }
             Content::Times(source, _) => {
                 let header = source.header();
                 let stored = Grid {

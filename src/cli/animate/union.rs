@@ -84,14 +84,15 @@ impl<'a> Union<'a> {
             Ok(())
         };
         match self.content {
-            Content::Still(shown) => {
+            // Of several volumes the first time stands for all.
+            Content::Still(shown) | Content::Together(shown, _) => {
                 for frames in self.frames.values() {
                     draw(shown.looked_at(), &shown.parts(), frames)?;
                 }
             }
             Content::Times(source, bricks) => {
                 let quiet = Progress::of_part();
-                let unseen = |_, _: &Volume| Ok(());
+                let unseen = |_, _: &[&Volume]| Ok(());
                 let mut volumes = Volumes::new(source, *bricks, self.scene, &quiet, &unseen);
                 let alone = Parts::Channels(Vec::new());
                 for (done, (&time, frames)) in self.frames.iter().enumerate() {

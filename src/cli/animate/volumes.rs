@@ -2,10 +2,15 @@
 //!
 //! Between two times every voxel is mixed, `v = v0 + s (v1 - v0)`.
 
+use super::together::Together;
 use crate::{
     cli::{
-        Error, flags::SceneFlags, load, memory::DeviceMemory, progress::Progress,
-        scene_inputs::open_stream,
+        Error,
+        flags::SceneFlags,
+        load,
+        memory::DeviceMemory,
+        progress::Progress,
+        scene_inputs::{Parts, SceneInputs, open_stream},
     },
     offscreen::Stream,
     transfer::{Quantity, ValueSummary},
@@ -26,6 +31,8 @@ pub struct Moment {
     /// Where voxels come from, where they are not in memory, and every n-th of them, unless others have looked at
     /// those.
     pub streamed: Option<(Stream, Option<Volume>)>,
+    /// The volumes that are seen together with it, where they change with the time.
+    pub together: Option<Box<SceneInputs>>,
 }
 
 impl Moment {
@@ -38,7 +45,13 @@ impl Moment {
         Self {
             volume: Arc::new(volume),
             streamed: None,
+            together: None,
         }
+    }
+
+    /// What is seen together with it, if not `parts` at all times.
+    pub fn parts(&self) -> Option<Parts<'_>> {
+        self.together.as_ref().map(|shown| shown.parts())
     }
 
     /// A volume that shows which values there are.
@@ -50,15 +63,24 @@ impl Moment {
 
 /// Reads what frames need, and keeps it as long as the next frame needs it too.
 pub struct Volumes<'a> {
-    source: &'a Arc<dyn Source>,
-    /// Of the device, where volumes are drawn brick by brick from their file.
-    bricks: Option<DeviceMemory>,
+    of: Of<'a>,
     scene: SceneFlags,
     progress: &'a Progress,
     first: Option<(TimeComponent, DAffine3)>,
     kept: Vec<(u32, Arc<Moment>)>,
-    /// Told of every volume that is read.
-    saw: &'a (dyn Fn(u32, &Volume) -> Result<(), Error> + Sync),
+    saw: &'a Saw<'a>,
+}
+
+/// Is told of every time that is read, with its volumes.
+pub type Saw<'a> = dyn Fn(u32, &[&Volume]) -> Result<(), Error> + Sync + 'a;
+
+/// What is read.
+#[derive(Clone, Copy)]
+enum Of<'a> {
+    /// One number a voxel; with the device's memory, drawn brick by brick from the file.
+    Source(&'a Arc<dyn Source>, Option<DeviceMemory>),
+    /// All that is seen together.
+    Together(&'a Together),
 }
 
 impl<'a> Volumes<'a> {
@@ -68,11 +90,24 @@ impl<'a> Volumes<'a> {
         bricks: Option<DeviceMemory>,
         scene: &SceneFlags,
         progress: &'a Progress,
-        saw: &'a (dyn Fn(u32, &Volume) -> Result<(), Error> + Sync),
+        saw: &'a Saw<'a>,
     ) -> Self {
+        Self::of(Of::Source(source, bricks), scene, progress, saw)
+    }
+
+    /// Of all volumes that are seen together.
+    pub fn together(
+        together: &'a Together,
+        scene: &SceneFlags,
+        progress: &'a Progress,
+        saw: &'a Saw<'a>,
+    ) -> Self {
+        Self::of(Of::Together(together), scene, progress, saw)
+    }
+
+    fn of(of: Of<'a>, scene: &SceneFlags, progress: &'a Progress, saw: &'a Saw<'a>) -> Self {
         Self {
-            source,
-            bricks,
+            of,
             scene: scene.clone(),
             progress,
             first: None,
@@ -90,12 +125,15 @@ impl<'a> Volumes<'a> {
         if before == after {
             return Ok(first);
         }
+        let Of::Source(source, _) = self.of else {
+            unreachable!("times of several volumes are whole");
+        };
         let second = self.whole(after)?;
         blend(&first.volume, &second.volume, time.fract())
             .map(|volume| Arc::new(Moment::in_memory(volume)))
             .map_err(|problem| {
                 Error::Read(ReadError {
-                    path: self.source.path().to_owned(),
+                    path: source.path().to_owned(),
                     problem,
                 })
             })
@@ -105,20 +143,37 @@ impl<'a> Volumes<'a> {
         if let Some((_, moment)) = self.kept.iter().find(|kept| kept.0 == time) {
             return Ok(Arc::clone(moment));
         }
-        let moment = match self.bricks {
-            Some(memory) => self.streamed(time, memory)?,
-            None => Moment::in_memory(self.read(time)?),
+        let moment = match self.of {
+            Of::Source(source, Some(memory)) => self.streamed(source, time, memory)?,
+            Of::Source(source, None) => Moment::in_memory(self.read(source, time)?),
+            Of::Together(together) => {
+                let shown = together.at(time)?;
+                Moment {
+                    volume: Arc::clone(&shown.volume),
+                    streamed: None,
+                    together: Some(Box::new(shown)),
+                }
+            }
         };
-        (self.saw)(time, moment.looked_at())?;
+        let parts = moment.parts();
+        let beside = parts.as_ref().map(|parts| parts.beside().volumes());
+        let beside = beside.unwrap_or_default();
+        (self.saw)(time, &[vec![moment.looked_at()], beside].concat())?;
         let moment = Arc::new(moment);
         self.kept.push((time, Arc::clone(&moment)));
         Ok(moment)
     }
 
-    fn streamed(&mut self, time: u32, memory: DeviceMemory) -> Result<Moment, Error> {
+    fn streamed(
+        &mut self,
+        source: &Arc<dyn Source>,
+        time: u32,
+        memory: DeviceMemory,
+    ) -> Result<Moment, Error> {
         self.scene.input.time = Some(time.to_string());
-        let (pick, note) = self.scene.input.pick(self.source.header())?;
-        let source = Arc::clone(self.source);
+        let (pick, note) = self.scene.input.pick(source.header())?;
+        let notes_of_file = source.header().notes.clone();
+        let source = Arc::clone(source);
         let (stream, stretched) = open_stream(source, pick, &self.scene, memory, self.progress)?;
         // What is seen of it is small, whatever the memory for volumes.
         let overview = stream.overview();
@@ -130,7 +185,7 @@ impl<'a> Volumes<'a> {
             &Limits::default(),
         )?;
         if self.first.is_none() {
-            let notes = self.source.header().notes.iter().chain(&note);
+            let notes = notes_of_file.iter().chain(&note);
             notes
                 .chain(&stretched)
                 .for_each(|note| self.progress.note(note));
@@ -143,24 +198,25 @@ impl<'a> Volumes<'a> {
         Ok(Moment {
             volume: Arc::new(stream.outline().clone()),
             streamed: Some((stream, Some(seen))),
+            together: None,
         })
     }
 
-    fn read(&mut self, time: u32) -> Result<Volume, Error> {
+    fn read(&mut self, source: &Arc<dyn Source>, time: u32) -> Result<Volume, Error> {
         Ok(match self.first {
             // What there is to say is said of the first.
             None => {
                 self.scene.input.time = Some(time.to_string());
-                let (pick, _) = self.scene.input.pick(self.source.header())?;
-                let volume = load::read(self.source.as_ref(), &self.scene, self.progress)?;
+                let (pick, _) = self.scene.input.pick(source.header())?;
+                let volume = load::read(source.as_ref(), &self.scene, self.progress)?;
                 self.first = Some((pick, volume.world_from_voxel));
                 volume
             }
             Some((pick, world_from_voxel)) => {
-                let whole = self.source.header().whole();
+                let whole = source.header().whole();
                 let limits = self.scene.input.limits();
                 let pick = TimeComponent { time, ..pick };
-                let volume = Volume::read(self.source.as_ref(), pick, whole, &limits)?;
+                let volume = Volume::read(source.as_ref(), pick, whole, &limits)?;
                 Volume {
                     // Stretched as the first is.
                     world_from_voxel,
