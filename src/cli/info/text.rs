@@ -1,6 +1,6 @@
 //! What a person reads: lines of a name and what is known, in groups.
 
-use super::{RenderBytes, Report, place, structure};
+use super::{RenderBytes, Report, earth, place, structure};
 use crate::{
     cli::{
         error::visible,
@@ -74,6 +74,10 @@ impl Page<'_> {
             lines.group();
             self.variables(&mut lines, limits);
         }
+        if !self.header.derived.is_empty() {
+            lines.group();
+            earth::derived(&self.header.derived, &mut lines);
+        }
         if !self.header.series.is_empty() {
             lines.group();
             self.series(&mut lines);
@@ -103,6 +107,9 @@ impl Page<'_> {
                     others.len()
                 ),
             ),
+        }
+        if let Some(what) = &header.long_name {
+            lines.say("", what);
         }
         let [x, y, z] = report.dims;
         let count = grouped(header.voxel_count());
@@ -176,6 +183,9 @@ impl Page<'_> {
         lines.say("world", format!("{}   from voxel centres", row(0)));
         lines.say("", row(1));
         lines.say("", row(2));
+        if let Some(map) = &header.map {
+            earth::map(map, lines);
+        }
     }
 
     fn values(&self, lines: &mut Lines) {
@@ -278,7 +288,12 @@ impl Page<'_> {
                     };
                     let unit =
                         super::unit(header).map_or(String::new(), |unit| format!(", {unit}"));
-                    format!("{x} x {y} x {z}, {}{times}{unit}", header.stored.name())
+                    let what = match &header.long_name {
+                        Some(what) => format!(", {what}"),
+                        None => String::new(),
+                    };
+                    let stored = header.stored.name();
+                    format!("{x} x {y} x {z}, {stored}{times}{unit}{what}")
                 }
                 Err(error) => error.to_string(),
             };
