@@ -88,7 +88,9 @@ pub(super) fn open(
     let mut header = stored_header(arrays.as_ref(), format, size, &levels)?;
     header.derived = available(arrays.as_ref());
     header.map = map(arrays.as_ref(), &mut header.notes);
-    describe(&choice.variable, &mut header);
+    if recipe.is_none() {
+        describe(&choice.variable, &mut header);
+    }
     let voxels = grid(Arc::clone(&arrays), file_bytes, &choice, header, limits)?;
     let mut stored: Box<dyn Source> = Box::new(voxels);
     if let Some(recipe) = recipe {

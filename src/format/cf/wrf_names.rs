@@ -22,7 +22,7 @@ pub(super) fn describe(variable: &Variable, header: &mut Header) {
     let row = STANDARD_NAMES.iter().find(|row| row.0 == variable.name);
     header.standard_name = row.map(|row| row.1.to_owned());
     if variable.name == "T" {
-        header.long_name = Some("perturbation potential temperature (theta - 300 K)".to_owned());
+        header.long_name = Some("perturbation potential temperature".to_owned());
         header.notes.push(
             "T is the perturbation potential temperature, theta - 300 K; --variable temperature is that of the air".to_owned(),
         );
