@@ -69,7 +69,7 @@ fn info_lists_what_can_be_derived_apart_and_the_map() {
     for line in [
         "\nderived      temperature        K, from T, P, PB\n",
         "\n             wind_speed         m s-1, from U, V, W\n",
-        "\nvariable     T: all numbers here are its own; 9 more below\n             perturbation potential temperature\n",
+        "\nvariable     T: all numbers here are its own; 10 more below\n             perturbation potential temperature\n",
         "\nmap          Lambert conformal, true at latitude 30 and 60, standard longitude -98\n",
         "\ncentre       latitude 45.5560, longitude -179.9500\n",
     ] {
@@ -155,7 +155,7 @@ fn quantities_have_their_colours() {
         ("temperature", "in the colours of roma"),
         ("vapor", "in the colours of viridis"),
         ("cloud", "in the colours of viridis"),
-        ("u", "in the colours of wind"),
+        ("u", "blue below, red above"),
         ("w", "blue below, red above"),
     ] {
         let ran = folder.run(&format!("info phantom:storm,n=32 --variable {variable}"));
