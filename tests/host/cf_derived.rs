@@ -194,13 +194,15 @@ fn the_map_and_the_middle_of_the_grid_are_told() {
 
 #[test]
 fn perturbation_potential_temperature_has_its_name() {
-    let header = open(WRF, Some("T")).unwrap().header().clone();
-    let name = header.long_name.expect("a name");
-    assert!(
-        name.contains("perturbation potential temperature"),
-        "{name}"
-    );
-    assert_eq!(header.standard_name, None);
+    // One file describes its T, the other does not.
+    for file in [WRF, "netcdf/wrf.nc"] {
+        let header = open(file, Some("T")).unwrap().header().clone();
+        let name = header.long_name.as_deref();
+        assert_eq!(name, Some("perturbation potential temperature"), "{file}");
+        assert_eq!(header.standard_name, None);
+        let notes = header.notes.join("; ");
+        assert!(notes.contains("theta - 300 K"), "{file}: {notes}");
+    }
     let header = open(WRF, Some("temperature")).unwrap().header().clone();
     assert_eq!(header.standard_name.as_deref(), Some("air_temperature"));
 }
