@@ -149,6 +149,21 @@ fn a_surface_of_what_falls_with_height_is_its_mean_at_a_third_of_the_box_at_all_
 }
 
 #[test]
+fn a_variable_of_several_is_drawn_brick_by_brick_with_the_same_surface() {
+    let folder = Folder::new();
+    let draw = |words: &str| {
+        let ran = folder.run(&format!("render {words} --size 24x16 --force -o a.png"));
+        ran.assert_done();
+        ran.err
+    };
+    let said = draw(&format!("{} --variable temperature --stream", wrf()));
+    assert!(said.contains("temperature is derived: "), "{said}");
+    let storm = "phantom:storm,n=24,times=2 --variable vapor --mode iso";
+    let [whole, bricks] = ["", "--stream"].map(|word| level(&draw(&format!("{storm} {word}"))));
+    assert_eq!(whole, bricks);
+}
+
+#[test]
 fn quantities_have_their_colours() {
     let folder = Folder::new();
     for (variable, words) in [

@@ -1,10 +1,12 @@
 //! `stratavox info`: what a volume is, before anything is drawn.
 
+mod bars;
 mod earth;
 mod place;
 mod structure;
 mod text;
 mod values;
+mod variables;
 mod watched;
 
 use super::{
