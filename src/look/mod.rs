@@ -5,6 +5,7 @@
 //! values   what a file says of its values, and what they look like     light   where there is light, and which
 //! side     the face of a slab, or the best of six sides                frame   a camera fitted to what is visible
 //! work     samples of a picture                                        components   thin matter of CT at faces
+//! height   the surface of what falls with height
 //! ```
 //!
 //! `stratavox render --look auto` and the viewer choose by these functions. Nothing here asks a clock: the same inputs give
@@ -12,6 +13,7 @@
 
 mod components;
 mod frame;
+mod height;
 mod light;
 mod side;
 mod values;
@@ -21,6 +23,7 @@ pub use components::leave_out;
 pub use frame::{
     SHARE, SMALL_PIXELS, box_of, corners, fit_to_visible, frames_the_box, small_of, visible_in,
 };
+pub use height::{falls_with_height, mean_at_a_third};
 pub use light::{LIGHT, MATERIAL, Origin, STILL_SAMPLES, half_gradient, is_lit, light, may_choose};
 pub use side::{SIDES, best_side, face};
 pub use values::{context, first_variable, summary};

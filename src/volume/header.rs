@@ -1,7 +1,7 @@
 //! What a source says of itself before any voxel is read: `value = stored * slope + intercept` at
 //! `world = world_from_voxel voxel`.
 
-use super::{VoxelBox, VoxelType};
+use super::{MapProjection, VoxelBox, VoxelType};
 use glam::DAffine3;
 
 /// What a source holds. Nothing in it can be wrong: dims are not zero, the affine can be inverted.
@@ -57,6 +57,10 @@ pub struct Header {
     pub series: Vec<Series>,
     /// Names of the variables in the file; the one this source reads comes first. Empty where the format has no names.
     pub variables: Vec<String>,
+    /// Variables that the file does not have and that are computed from those that it has, where they are asked for.
+    pub derived: Vec<DerivedVariable>,
+    /// The map that the world is drawn on; `None` where the file tells no map.
+    pub map: Option<MapProjection>,
     /// What a person should know about how the file was understood, one sentence each.
     pub notes: Vec<String>,
 }
@@ -93,6 +97,8 @@ impl Header {
             time_names: Vec::new(),
             series: Vec::new(),
             variables: Vec::new(),
+            derived: Vec::new(),
+            map: None,
             notes: Vec::new(),
         }
     }
@@ -137,6 +143,18 @@ pub struct Channel {
     pub srgb: Option<[f32; 3]>,
     /// The values from dark to bright, after rescale, that the file wants it shown with.
     pub window: Option<[f64; 2]>,
+}
+
+/// A variable that is computed from others of the file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "json", derive(serde::Serialize, serde::Deserialize))]
+pub struct DerivedVariable {
+    /// As a file's own variable is asked for: `temperature`.
+    pub name: String,
+    /// The unit of its values: `K`.
+    pub unit: String,
+    /// Names of what it is computed from.
+    pub from: Vec<String>,
 }
 
 /// A series of a DICOM folder.

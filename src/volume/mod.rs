@@ -26,6 +26,7 @@ pub mod kernel;
 pub mod labels;
 mod limits;
 mod magnitude;
+mod map;
 mod octree;
 mod part;
 #[cfg(feature = "phantoms")]
@@ -52,11 +53,14 @@ pub(crate) use components::{Component, Components};
 pub use crossings::RayInterval;
 pub use denoise::{Denoise, MAX_SIGMA_VOXELS, Pass, noise_of, with_numbers};
 pub use grid::Grid;
-pub use header::{Channel, ComponentKind, Format, Header, Rescale, Series, VolumeSelection};
+pub use header::{
+    Channel, ComponentKind, DerivedVariable, Format, Header, Rescale, Series, VolumeSelection,
+};
 pub use histogram::Histogram;
 pub use joint::{JointHistogram, steepest_gradient};
 pub use limits::Limits;
 pub use magnitude::Magnitude;
+pub use map::{MapKind, MapProjection};
 pub use octree::{Address, AddressError, Leaf, LevelCount, MixedNode, NodeState, Octree};
 pub use part::VoxelPart;
 pub(crate) use part::part_of;

@@ -73,10 +73,15 @@ fn of_several_variables_it_is_said_whose_numbers_these_are() {
     ran.assert_done();
     let first = "variable     cloud: all numbers here are its own; 5 more below\n";
     assert!(ran.out.contains(first), "{}", ran.out);
-    assert!(ran.out.contains("times        8\n"), "{}", ran.out);
+    assert!(
+        ran.out.contains("times        8, 0 h to 24 h\n"),
+        "{}",
+        ran.out
+    );
     for line in [
-        "variables    cloud            16 x 16 x 6, f32, 8 times\n",
-        "             temperature      16 x 16 x 6, f32, 8 times\n",
+        "variables    cloud            16 x 16 x 6, f32, 8 times, g kg-1, Cloud water and ice\n",
+        "             temperature      16 x 16 x 6, f32, 8 times, K, Temperature\n",
+        "seen from    azimuth -60, elevation 25 degrees\n",
         "             --variable NAME takes one\n",
     ] {
         assert!(ran.out.contains(line), "no {line:?} in {}", ran.out);

@@ -56,6 +56,7 @@ mod thumbnails_at_once;
 mod untrusted;
 mod view;
 mod weather;
+mod weather_derived;
 mod widgets;
 mod with;
 mod words;

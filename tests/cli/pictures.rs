@@ -263,7 +263,7 @@ fn info_has_the_promised_keys_and_exact_numbers() {
     let wanted = json(
         r#"{"format":"nrrd","dims":[2,2,1],"components":1,"times":1,"type":"i16","spacing":[2.0,3.0,4.0],
             "world_from_voxel":[[2.0,0.0,0.0,10.0],[0.0,3.0,0.0,20.0],[0.0,0.0,4.0,30.0],[0.0,0.0,0.0,1.0]],
-            "min":-2.0,"max":8.0,"mean":2.5,"non_finite":0,"fill_count":0,"variables":[],"levels":1,"render_bytes":null,"software_device_bytes":null,"unit":null,"meaning":"numbers",
+            "min":-2.0,"max":8.0,"mean":2.5,"non_finite":0,"fill_count":0,"variables":[],"derived":[],"map":null,"levels":1,"render_bytes":null,"software_device_bytes":null,"unit":null,"long_name":null,"meaning":"numbers",
             "channels":[],"time_names":[],"series":[],"notes":[]}"#,
     );
     assert_eq!(info, wanted);

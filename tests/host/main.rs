@@ -42,6 +42,7 @@ mod vtk;
 #[path = "../shared/zarr.rs"]
 mod zarr;
 
+mod cf_derived;
 mod cf_wrf;
 #[cfg(unix)]
 mod ci_group;

@@ -298,6 +298,41 @@ fn the_storm_has_variables_and_times_that_differ_and_stay_in_their_range() {
 }
 
 #[test]
+fn the_storm_is_of_the_earth_and_has_hours_and_units() {
+    for (words, hours) in [
+        ("times=1", &["24 h"] as &[_]),
+        ("times=3", &["0 h", "12 h", "24 h"]),
+        ("times=4", &["0 h", "8 h", "16 h", "24 h"]),
+    ] {
+        let source = open(&format!("storm,n=8,{words}"));
+        assert_eq!(source.header().time_names, hours);
+    }
+    let eight = open("storm,n=8").header().time_names.clone();
+    assert_eq!(
+        (eight.len(), eight[1].as_str(), eight[7].as_str()),
+        (8, "3.43 h", "24 h")
+    );
+    for (name, unit, standard_name) in [
+        ("cloud", "g kg-1", None),
+        ("vapor", "g kg-1", Some("humidity_mixing_ratio")),
+        ("temperature", "K", Some("air_temperature")),
+        ("u", "m s-1", Some("eastward_wind")),
+        ("v", "m s-1", Some("northward_wind")),
+        ("w", "m s-1", Some("upward_air_velocity")),
+    ] {
+        let header = open(&format!("storm,n=8,variable={name}")).header().clone();
+        assert_eq!(header.unit.as_deref(), Some(unit), "{name}");
+        assert_eq!(header.standard_name.as_deref(), standard_name, "{name}");
+        assert!(header.is_earth);
+        // It lies nowhere on the globe.
+        assert_eq!((header.degree_lengths, header.map), ([None; 2], None));
+        assert_eq!(header.length_metres, Some(1e3));
+    }
+    let header = open("head,n=8").header().clone();
+    assert!(!header.is_earth && header.unit.is_none() && header.time_names.is_empty());
+}
+
+#[test]
 fn a_phantom_has_the_same_bytes_each_time() {
     let source = open("storm,n=24,times=2");
     let whole = source

@@ -359,6 +359,11 @@ impl Animate {
         let source = load::open_first(&mut scene, &limits, progress)?;
         let header = source.header();
         scene.classification.context = scene.is_auto().then(|| context(header));
+        let mode = scene.sampling.mode.unwrap_or_default();
+        if let Some(with_level) = scene_inputs::with_level(&scene, mode, source.as_ref(), progress)?
+        {
+            scene = with_level;
+        }
         let mut shots = film.shots(&scene, depth, header, &shots::grid(&scene, header)?)?;
         for shot in &mut shots {
             shot.settings.skip &= !self.no_skip;

@@ -1,9 +1,12 @@
 //! `stratavox info`: what a volume is, before anything is drawn.
 
+mod bars;
+mod earth;
 mod place;
 mod structure;
 mod text;
 mod values;
+mod variables;
 mod watched;
 
 use super::{
@@ -15,7 +18,8 @@ use super::{
 };
 use crate::annotate::unit;
 use crate::volume::{
-    ComponentKind, Grid, Header, Limits, Problem, ReadError, Source, Statistics, TimeComponent,
+    ComponentKind, DerivedVariable, Grid, Header, Limits, MapProjection, Problem, ReadError,
+    Source, Statistics, TimeComponent,
 };
 use clap::Args;
 use glam::DVec3;
@@ -62,6 +66,10 @@ struct Report {
     non_finite: u64,
     fill_count: u64,
     variables: Vec<String>,
+    /// What is computed from these on demand.
+    derived: Vec<DerivedVariable>,
+    /// The map of a weather model; `null` where the file tells none. Angles in degrees.
+    map: Option<MapProjection>,
     /// Resolutions that `--level` chooses from.
     levels: u32,
     render_bytes: RenderBytes,
@@ -69,6 +77,8 @@ struct Report {
     software_device_bytes: u64,
     /// Of values; `null` where the file is silent.
     unit: Option<String>,
+    /// What the values are; `null` where nothing says it.
+    long_name: Option<String>,
     /// What the numbers of a voxel are to each other: numbers, rgb, rgba, vector or channels.
     meaning: &'static str,
     /// One for each component that is a channel.
@@ -250,10 +260,13 @@ fn report(header: &Header, statistics: &Statistics) -> Report {
         non_finite: statistics.non_finite_count,
         fill_count: statistics.fill_count,
         variables: header.variables.clone(),
+        derived: header.derived.clone(),
+        map: header.map,
         levels: header.levels,
         render_bytes: RenderBytes::of(header, has_holes(statistics)),
         software_device_bytes: software_device_bytes(header, has_holes(statistics)),
         unit: unit(header),
+        long_name: header.long_name.clone(),
         meaning,
         channels,
         time_names: header.time_names.clone(),

@@ -1,6 +1,6 @@
 //! What a person reads: lines of a name and what is known, in groups.
 
-use super::{RenderBytes, Report, place, structure};
+use super::{RenderBytes, Report, bars::bars, earth, place, structure};
 use crate::{
     cli::{
         error::visible,
@@ -32,12 +32,8 @@ struct Side {
     is_open: bool,
 }
 
-/// Of the line of bars.
-const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
-/// Bars in the line.
-const BAR_COUNT: usize = 48;
 /// Of a list that may be long.
-const MAX_LINES: usize = 40;
+pub const MAX_LINES: usize = 40;
 
 /// Lines, groups of them apart.
 #[derive(Default)]
@@ -74,6 +70,10 @@ impl Page<'_> {
             lines.group();
             self.variables(&mut lines, limits);
         }
+        if !self.header.derived.is_empty() {
+            lines.group();
+            earth::derived(&self.header.derived, &mut lines);
+        }
         if !self.header.series.is_empty() {
             lines.group();
             self.series(&mut lines);
@@ -103,6 +103,9 @@ impl Page<'_> {
                     others.len()
                 ),
             ),
+        }
+        if let Some(what) = &header.long_name {
+            lines.say("", what);
         }
         let [x, y, z] = report.dims;
         let count = grouped(header.voxel_count());
@@ -176,6 +179,9 @@ impl Page<'_> {
         lines.say("world", format!("{}   from voxel centres", row(0)));
         lines.say("", row(1));
         lines.say("", row(2));
+        if let Some(map) = &header.map {
+            earth::map(map, lines);
+        }
     }
 
     fn values(&self, lines: &mut Lines) {
@@ -261,34 +267,6 @@ impl Page<'_> {
         }
     }
 
-    /// The others in the file, each with what its own header says.
-    fn variables(&self, lines: &mut Lines, limits: &Limits) {
-        for (i, name) in self.header.variables.iter().take(MAX_LINES).enumerate() {
-            let flags = InputFlags {
-                variable: Some(name.clone()),
-                ..self.input.clone()
-            };
-            let what = match flags.open(limits) {
-                Ok(source) => {
-                    let header = source.header();
-                    let [x, y, z] = header.dims;
-                    let times = match header.times {
-                        1 => String::new(),
-                        times => format!(", {times} times"),
-                    };
-                    let unit =
-                        super::unit(header).map_or(String::new(), |unit| format!(", {unit}"));
-                    format!("{x} x {y} x {z}, {}{times}{unit}", header.stored.name())
-                }
-                Err(error) => error.to_string(),
-            };
-            let title = if i == 0 { "variables" } else { "" };
-            lines.say(title, format!("{name:<16} {what}"));
-        }
-        self.rest(lines, self.header.variables.len());
-        lines.say("", "--variable NAME takes one");
-    }
-
     fn series(&self, lines: &mut Lines) {
         for (i, series) in self.header.series.iter().take(MAX_LINES).enumerate() {
             let title = if i == 0 { "series" } else { "" };
@@ -307,46 +285,9 @@ impl Page<'_> {
         }
     }
 
-    fn rest(&self, lines: &mut Lines, count: usize) {
+    pub fn rest(&self, lines: &mut Lines, count: usize) {
         if count > MAX_LINES {
             lines.say("", format!("and {} more", count - MAX_LINES));
         }
-    }
-}
-
-/// A histogram on one line, its counts on a logarithmic scale; a blank where there is no voxel.
-fn bars(counts: &[u64]) -> String {
-    let count = counts.len().min(BAR_COUNT);
-    let mut sums = vec![0_u64; count];
-    for (i, &voxels) in counts.iter().enumerate() {
-        sums[i * count / counts.len()] += voxels;
-    }
-    let most = sums.iter().copied().max().unwrap_or(0).max(1) as f64;
-    let bar = |voxels: u64| match voxels {
-        0 => ' ',
-        voxels => {
-            let t = (voxels as f64).ln_1p() / most.ln_1p();
-            BARS[((t * BARS.len() as f64).ceil() as usize).clamp(1, BARS.len()) - 1]
-        }
-    };
-    let line: String = sums.into_iter().map(bar).collect();
-    format!("|{line}|")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn bars_are_higher_where_voxels_are_more_and_blank_where_none_are() {
-        assert_eq!(bars(&[0, 1, 100]), "| ▂█|");
-        assert_eq!(bars(&[5]), "|█|");
-        // Twice as many bins as bars: each bar is two of them.
-        let counts: Vec<u64> = (0..2 * BAR_COUNT as u64)
-            .map(|i| u64::from(i < 2))
-            .collect();
-        let line = bars(&counts);
-        assert_eq!(line.chars().filter(|&c| c == '█').count(), 1, "{line}");
-        assert_eq!(line.chars().count(), BAR_COUNT + 2, "{line}");
     }
 }

@@ -4,6 +4,7 @@ mod beside;
 mod channels;
 mod check;
 mod colors;
+mod level;
 mod opacity;
 mod paint;
 mod points;
@@ -13,6 +14,7 @@ mod streamed;
 mod with;
 
 pub use check::{check, shows_several};
+pub use level::with_level;
 pub use streamed::{is_wanted as wants_stream, open as open_stream};
 
 use super::{
@@ -139,6 +141,8 @@ impl SceneInputs {
         device: &dyn DeviceRoom,
         progress: &Progress,
     ) -> Result<Self, Error> {
+        let with_level = with_level(scene, settings.mode, source.as_ref(), progress)?;
+        let scene = with_level.as_ref().unwrap_or(scene);
         if streamed::is_wanted(source.as_ref(), scene, settings, device)? {
             return Self::streamed(source, scene, settings, device, progress);
         }

@@ -18,7 +18,13 @@ impl Reader<'_> {
             Err(_) => scene.input.variable = Some(word.to_owned()),
         }
         let source = open(&scene.input, &scene.input.limits())?;
-        scene.classification.context = scene.is_auto().then(|| context(source.header()));
+        let header = source.header();
+        scene.classification.context = scene.is_auto().then(|| context(header));
+        let is_news = |what: &&String| !what.eq_ignore_ascii_case(&word.replace('_', " "));
+        let what = header.long_name.as_ref().filter(is_news);
+        let what = what.map_or(String::new(), |what| format!(", {what}"));
+        let unit = header.unit.as_ref();
+        let unit = unit.map_or(String::new(), |unit| format!(" {unit}"));
         let (volume, _) = load_from(source, &scene, self.device, self.progress)?;
         let volume = if is_same_grid(&volume.grid(), grid) {
             Volume {
@@ -61,7 +67,7 @@ impl Reader<'_> {
         let ends = [function.color.first(), function.color.last()];
         let [low, high] = ends.map(|point| point.map_or(0.0, |point| point.value));
         self.progress.note(&format!(
-            "surfaces are coloured by {word}, from {low:.6} to {high:.6}; --window, --preset and --tf say otherwise"
+            "surfaces are coloured by {word}{what}, from {low:.6} to {high:.6}{unit}; --window, --preset and --tf say otherwise"
         ));
         Ok(Other {
             volume,

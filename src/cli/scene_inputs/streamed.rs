@@ -153,6 +153,8 @@ impl SceneInputs {
         let of_overview = SceneFlags {
             input: InputFlags {
                 path: scene.input.path.clone(),
+                variable: scene.input.variable.clone(),
+                series: scene.input.series.clone(),
                 ..InputFlags::default()
             },
             ..scene.clone()

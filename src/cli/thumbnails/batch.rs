@@ -19,7 +19,7 @@ use crate::{
         progress::Progress,
         reasons::why_empty,
         renderer::Device,
-        scene_inputs::SceneInputs,
+        scene_inputs::{SceneInputs, with_level},
         signals::Gate,
     },
     picture::{EncodedPicture, Picture, PictureFormat, WriteOptions},
@@ -396,7 +396,11 @@ impl<'a> Reading<'a> {
         let held = Held::of(&scene, source.header().components);
         let needed = needed_bytes(source.header(), &scene, self.memory, held);
         let share = self.room.share(needed);
-        let shown = SceneInputs::of(source, &scene, self.batch.settings, &self.memory, progress)?;
+        let settings = self.batch.settings;
+        if let Some(with_level) = with_level(&scene, settings.mode, source.as_ref(), progress)? {
+            scene = with_level;
+        }
+        let shown = SceneInputs::of(source, &scene, settings, &self.memory, progress)?;
         Ok(Read {
             shown: shown.at_level(&scene),
             scene,

@@ -61,7 +61,7 @@ pub(super) fn choose(arrays: &dyn Arrays, wanted: &VolumeSelection) -> Result<Ch
 }
 
 /// Variables that a picture can show, those with height first, and last what only says where others lie.
-fn drawable(arrays: &dyn Arrays) -> Vec<&Variable> {
+pub(super) fn drawable(arrays: &dyn Arrays) -> Vec<&Variable> {
     let helpers = helpers(arrays);
     let mut ranked: Vec<(usize, &Variable)> = arrays
         .variables()

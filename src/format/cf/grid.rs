@@ -36,7 +36,7 @@ pub(crate) struct Grid {
 }
 
 /// Bytes that are read, and put in order, at once: what a read takes beside the voxels it gives.
-const SLAB_BYTES: u64 = 32 << 20;
+pub(super) const SLAB_BYTES: u64 = 32 << 20;
 
 /// An error where a pick or a box lies outside the header, or a box needs more memory than allowed.
 pub(super) fn check(

@@ -13,10 +13,12 @@
 //! 1976. Levels that are only numbers are spread over a quarter of the width. What was done is a note.
 
 mod axes;
+mod centered;
 mod choose;
 mod columns;
 mod coordinates;
 mod curved;
+mod derive;
 mod grid;
 mod knots;
 mod missing;
@@ -28,6 +30,8 @@ mod time;
 mod units;
 mod values;
 mod wrf;
+mod wrf_map;
+mod wrf_names;
 
 pub(crate) use grid::{Grid, Role};
 pub(crate) use missing::Missing;

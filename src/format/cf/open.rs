@@ -4,6 +4,7 @@ use super::axes::{coordinate, in_scope};
 use super::choose::{Choice, choose};
 use super::coordinates::Coordinate;
 use super::curved::flattened;
+use super::derive::{available, recipe};
 use super::grid::{Grid, Role};
 use super::model::{Arrays, Kind, Variable};
 use super::place::{Place, place};
@@ -36,9 +37,16 @@ fn open_checked(
     wanted: &VolumeSelection,
     limits: &Limits,
 ) -> Result<Box<dyn Source>, Problem> {
-    let choice = choose(arrays.as_ref(), wanted)?;
-    if wrf::is_wrf(arrays.as_ref(), &choice) {
-        return wrf::open(arrays, file_bytes, format, choice, wanted, limits);
+    let holder = Arc::clone(&arrays);
+    let recipe = recipe(holder.as_ref(), wanted)?;
+    let first = recipe.as_ref().and_then(|recipe| {
+        let first = recipe.reference()?;
+        Some(recipe.selection(first))
+    });
+    let choice = choose(arrays.as_ref(), first.as_ref().unwrap_or(wanted))?;
+    if wrf::is_on_grid(arrays.as_ref(), &choice.variable) {
+        let recipe = recipe.as_ref();
+        return wrf::open(arrays, file_bytes, format, choice, recipe, wanted, limits);
     }
     let mut notes = Vec::new();
     let dims = dims(arrays.as_ref(), &choice)?;
@@ -46,6 +54,7 @@ fn open_checked(
     let mut header = Header::new(format, dims, VoxelType::F32, place.world_from_voxel);
     header.is_earth = place.is_earth;
     header.degree_lengths = place.degrees;
+    header.derived = available(arrays.as_ref());
     header.notes = notes;
     header.notes.extend(place.notes);
     let even = place.uneven.iter().all(Option::is_none);
@@ -54,11 +63,23 @@ fn open_checked(
             "the points are unevenly spaced: the affine has their mean step, and a picture is drawn from even points between them".to_owned(),
         );
     }
-    let grid = grid(arrays, file_bytes, &choice, header, limits)?;
+    let voxels = grid(Arc::clone(&arrays), file_bytes, &choice, header, limits)?;
+    let stored: Box<dyn Source> = match &recipe {
+        None => Box::new(voxels),
+        Some(recipe) => {
+            let part = |choice: Choice| -> Result<Box<dyn Source>, Problem> {
+                let size = self::dims(arrays.as_ref(), &choice)?;
+                let header = Header::new(format, size, VoxelType::F32, place.world_from_voxel);
+                let voxels = grid(Arc::clone(&arrays), file_bytes, &choice, header, limits)?;
+                Ok(Box::new(voxels))
+            };
+            recipe.open(arrays.as_ref(), &voxels.header, limits, &part)?
+        }
+    };
     if even || wanted.as_stored {
-        return Ok(Box::new(grid));
+        return Ok(stored);
     }
-    Ok(Box::new(Regular::new(Box::new(grid), place.uneven, limits)))
+    Ok(Box::new(Regular::new(stored, place.uneven, limits)))
 }
 
 /// The stored voxels of a choice; `header` has their dims, their place and what was noted of it.
@@ -84,9 +105,12 @@ pub(super) fn grid(
         rescale: values.rescale,
         fill: values.missing.fill,
         unit: values.unit,
-        standard_name: text_of(choice, "standard_name"),
+        standard_name: text_of(choice, "standard_name").or(header.standard_name),
         // WRF words it `description`.
-        long_name: text_of(choice, "long_name").or_else(|| text_of(choice, "description")),
+        long_name: header
+            .long_name
+            .or_else(|| text_of(choice, "long_name"))
+            .or_else(|| text_of(choice, "description")),
         // Kilometres.
         length_metres: header.is_earth.then_some(1e3),
         is_labels: values.is_labels,

@@ -4,31 +4,35 @@
 //! `DX` by `DY` metres; the grid stands around the world's origin, as map factors and projection do not bend it.
 //! WRF-ARW Users' Guide, appendix on the output; Skamarock et al., NCAR/TN-556+STR, 2019, chapter 3.
 
+use super::centered::Centered;
 use super::choose::Choice;
 use super::columns::{Columns, Heights};
+use super::derive::{Recipe, available};
 use super::grid::Role;
 use super::knots::even_count;
 use super::model::{Arrays, Variable};
 use super::open::{dims, grid};
 use super::place::from_points;
-use super::regular::{between, valid_numbers, with_axis};
+use super::regular::with_axis;
+use super::wrf_map::map;
+use super::wrf_names::describe;
 use crate::format::problem::invalid;
 use crate::volume::{
-    Format, Header, Limits, Piece, Problem, ReadError, Source, TimeComponent, VolumeSelection,
-    VoxelBox, VoxelType, Voxels,
+    Format, Header, Limits, Problem, ReadError, Source, VolumeSelection, VoxelType,
 };
-use std::path::Path;
 use std::sync::Arc;
 
 /// The names of WRF's dimensions along x, y, z.
 const NAMES: [&str; 3] = ["west_east", "south_north", "bottom_top"];
 
 /// True for a variable on WRF's grid.
-pub(super) fn is_wrf(arrays: &dyn Arrays, choice: &Choice) -> bool {
+pub(super) fn is_on_grid(arrays: &dyn Arrays, variable: &Variable) -> bool {
     let attributes = arrays.attributes();
-    let has =
-        |k: usize| dimension(choice, k).is_some_and(|name| base(name) == NAMES.get(k).copied());
-    attributes.number("DX").is_some() && attributes.number("DY").is_some() && has(0) && has(1)
+    let mut names = variable.dimensions.iter().map(|d| base(&d.name)).rev();
+    attributes.number("DX").is_some()
+        && attributes.number("DY").is_some()
+        && names.next() == Some(Some(NAMES[0]))
+        && names.next() == Some(Some(NAMES[1]))
 }
 
 /// The name of the dimension along an axis of space.
@@ -51,11 +55,13 @@ fn is_staggered(choice: &Choice, k: usize) -> bool {
     dimension(choice, k).is_some_and(|name| name.ends_with("_stag"))
 }
 
+/// The variable of `choice`; with a `recipe` the one that is computed, `choice` being its first part.
 pub(super) fn open(
     arrays: Arc<dyn Arrays>,
     file_bytes: u64,
     format: Format,
     choice: Choice,
+    recipe: Option<&Recipe<'_>>,
     wanted: &VolumeSelection,
     limits: &Limits,
 ) -> Result<Box<dyn Source>, Problem> {
@@ -79,8 +85,25 @@ pub(super) fn open(
         Some(heights) => mean_heights(heights, mass, size[2])?,
         None => Vec::new(),
     };
-    let header = stored_header(arrays.as_ref(), format, size, &levels)?;
-    let mut stored: Box<dyn Source> = Box::new(grid(arrays, file_bytes, &choice, header, limits)?);
+    let mut header = stored_header(arrays.as_ref(), format, size, &levels)?;
+    header.derived = available(arrays.as_ref());
+    header.map = map(arrays.as_ref(), &mut header.notes);
+    if recipe.is_none() {
+        describe(&choice.variable, &mut header);
+    }
+    let voxels = grid(Arc::clone(&arrays), file_bytes, &choice, header, limits)?;
+    let mut stored: Box<dyn Source> = Box::new(voxels);
+    if let Some(recipe) = recipe {
+        let first = centered(stored, &choice, &[0, 1]);
+        let part = |choice: Choice| {
+            let size = dims(arrays.as_ref(), &choice)?;
+            let header = stored_header(arrays.as_ref(), format, size, &[])?;
+            let voxels = grid(Arc::clone(&arrays), file_bytes, &choice, header, limits)?;
+            let axes: &[usize] = if is_middle { &[0, 1, 2] } else { &[0, 1] };
+            Ok(centered(Box::new(voxels), &choice, axes))
+        };
+        stored = recipe.open(arrays.as_ref(), first.header(), limits, &part)?;
+    }
     let same_times = |heights: &Heights| {
         let times = stored.header().times;
         heights
@@ -92,15 +115,23 @@ pub(super) fn open(
     if wanted.as_stored {
         return Ok(stored);
     }
-    for k in [0, 1] {
-        if is_staggered(&choice, k) && stored.header().dims.get(k).is_some_and(|&n| n > 1) {
-            stored = Box::new(Centered::new(stored, k));
-        }
+    if recipe.is_none() {
+        stored = centered(stored, &choice, &[0, 1]);
     }
     let Some(heights) = heights else {
         return Ok(stored);
     };
     on_heights(stored, heights, &levels, mass, limits).map_err(|error| error.problem)
+}
+
+/// Values that are on the faces of cells along some of `axes`, in their middles.
+fn centered(mut source: Box<dyn Source>, choice: &Choice, axes: &[usize]) -> Box<dyn Source> {
+    for &k in axes {
+        if is_staggered(choice, k) && source.header().dims.get(k).is_some_and(|&n| n > 1) {
+            source = Box::new(Centered::new(source, k));
+        }
+    }
+    source
 }
 
 /// The header of the voxels as stored; `levels` are the mean heights of levels, where they are known.
@@ -239,85 +270,4 @@ fn on_heights(
         step,
         max_bytes: limits.max_bytes,
     }))
-}
-
-/// Values on the faces of cells along x or y, brought to the middles: the mean of two neighbours.
-struct Centered {
-    inner: Box<dyn Source>,
-    header: Header,
-    axis: usize,
-}
-
-impl Centered {
-    fn new(inner: Box<dyn Source>, axis: usize) -> Self {
-        let mut header = inner.header().clone();
-        if let Some(size) = header.dims.get_mut(axis) {
-            *size = size.saturating_sub(1);
-        }
-        let step = header.world_from_voxel.matrix3.col(axis.min(2)).length();
-        let half = 0.5
-            * step
-            * f64::from(
-                header
-                    .dims
-                    .get(axis)
-                    .copied()
-                    .unwrap_or(1)
-                    .saturating_sub(1),
-            );
-        header.world_from_voxel = with_axis(header.world_from_voxel, axis, -half, step);
-        header.stored = VoxelType::F32;
-        header.fill = None;
-        let side = if axis == 0 {
-            "west and east"
-        } else {
-            "south and north"
-        };
-        header.notes.push(format!(
-            "values on the faces of cells {side} are drawn as their means in the middle"
-        ));
-        Self {
-            inner,
-            header,
-            axis,
-        }
-    }
-}
-
-impl Source for Centered {
-    fn path(&self) -> &Path {
-        self.inner.path()
-    }
-
-    fn header(&self) -> &Header {
-        &self.header
-    }
-
-    fn read(&self, pick: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError> {
-        let mut wider = region;
-        if let Some(max) = wider.max.get_mut(self.axis) {
-            *max = max.saturating_add(1);
-        }
-        let Piece { voxels, loss } = self.inner.read(pick, wider)?;
-        let numbers = valid_numbers(&voxels, self.inner.header().fill);
-        let dims = wider
-            .dims()
-            .map(|n| usize::try_from(n).unwrap_or(usize::MAX));
-        let stride = if self.axis == 0 { 1 } else { dims[0] }.max(1);
-        let line = stride
-            .saturating_mul(dims.get(self.axis).copied().unwrap_or(1))
-            .max(1);
-        let mut out = Vec::new();
-        for block in numbers.chunks(line) {
-            let next = block.iter().skip(stride);
-            out.extend(
-                block
-                    .iter()
-                    .zip(next)
-                    .map(|(a, b)| between(*a, *b, 0.5, false)),
-            );
-        }
-        let voxels = Voxels::F32(out);
-        Ok(Piece { voxels, loss })
-    }
 }

@@ -4,7 +4,7 @@
 //! phantom:NAME[,n=256][,type=u8|u16|f32]     all of them
 //! phantom:sphere[,edge=LENGTH]               width of the soft edge; 0 for a hard one; default one voxel
 //! phantom:fog[,profile=exponential|linear]
-//! phantom:storm[,variable=NAME][,times=8]
+//! phantom:storm[,variable=NAME][,times=8]    hours 0 to 24, g/kg, K and m/s, on the Earth but nowhere on the globe
 //! phantom:cells                             three dyes of a microscope: nuclei, membranes, mitochondria
 //! ```
 //!
@@ -149,6 +149,7 @@ fn build(text: &str) -> Result<Phantom, Problem> {
     let n = spec.count("n", 1..=4096, 256)?;
     let mut known = vec!["n", "type"];
     let (mut times, mut variables) = (1, Vec::new());
+    let mut storm = None;
     let mut design = Design::cube(50.0);
     let mut meaning = ComponentKind::Numbers;
     let field_at: FieldAt = match spec.name {
@@ -201,6 +202,7 @@ fn build(text: &str) -> Result<Phantom, Problem> {
                 .into_iter()
                 .filter(|&other| other != variable);
             variables.extend(others.map(|other| other.name().to_string()));
+            storm = Some(variable);
             (design.min, design.max) = (storm::MIN, storm::MAX);
             design.value_range = variable.value_range();
             design.length_metres = Some(1e3);
@@ -246,6 +248,11 @@ fn build(text: &str) -> Result<Phantom, Problem> {
         hounsfield: design.hounsfield,
         is_patient: design.is_patient,
         length_metres: design.length_metres,
+        is_earth: storm.is_some(),
+        unit: storm.map(|variable| variable.unit().to_owned()),
+        standard_name: storm.and_then(|v| v.standard_name().map(str::to_owned)),
+        long_name: storm.map(|variable| variable.long_name().to_owned()),
+        time_names: storm.map_or(Vec::new(), |_| storm::time_names(times)),
         variables,
         ..Header::new(Format::Phantom, dims, stored, world_from_voxel)
     };

@@ -1,6 +1,12 @@
 //! A thunderstorm with an anvil, in closed form: several variables, several times.
 //!
-//! Kilometres, x east, y north, z up; the storm drifts to the north-east and grows while time goes on.
+//! Kilometres, x east, y north, z up, nowhere on the globe; the storm drifts to the north-east and grows while time goes
+//! on:
+//!
+//! ```text
+//! age = i / (N - 1) of time i of N, hour = 24 age        the only one of N = 1 is the grown storm, hour 24
+//! ```
+//!
 //! It looks like weather and obeys no law of it, but for the still air around it: temperature falls by
 //! 6.5 K/km to a tropopause at 12 km (the standard atmosphere, ISO 2533) and vapor by 1/e in 2.5 km.
 
@@ -51,6 +57,39 @@ impl Variable {
         }
     }
 
+    /// By UDUNITS.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Cloud | Self::Vapor => "g kg-1",
+            Self::Temperature => "K",
+            Self::U | Self::V | Self::W => "m s-1",
+        }
+    }
+
+    /// The CF standard name; water and ice of clouds together have none.
+    pub fn standard_name(self) -> Option<&'static str> {
+        match self {
+            Self::Cloud => None,
+            Self::Vapor => Some("humidity_mixing_ratio"),
+            Self::Temperature => Some("air_temperature"),
+            Self::U => Some("eastward_wind"),
+            Self::V => Some("northward_wind"),
+            Self::W => Some("upward_air_velocity"),
+        }
+    }
+
+    /// In words.
+    pub fn long_name(self) -> &'static str {
+        match self {
+            Self::Cloud => "Cloud water and ice",
+            Self::Vapor => "Water vapor mixing ratio",
+            Self::Temperature => "Temperature",
+            Self::U => "Wind to the east",
+            Self::V => "Wind to the north",
+            Self::W => "Wind upwards",
+        }
+    }
+
     /// What no point of any time leaves.
     pub fn value_range(self) -> [f64; 2] {
         match self {
@@ -80,14 +119,26 @@ const CLOUD_BASE: f64 = 1.2;
 const TILT: DVec2 = DVec2::new(0.35, 0.15);
 const UPDRAFT_RADIUS: f64 = 3.0;
 
+/// How long the storm grows.
+const HOURS: f64 = 24.0;
+
+/// 0 for the first of several times, 1 for the last. One time alone is the grown storm.
+fn age(time: u32, times: u32) -> f64 {
+    match times {
+        0 | 1 => 1.0,
+        _ => f64::from(time) / f64::from(times - 1),
+    }
+}
+
+/// The hour of each time, to the hundredth: `0 h`, `3.43 h`.
+pub(super) fn time_names(times: u32) -> Vec<String> {
+    let hour = |time| (HOURS * age(time, times) * 100.0).round() / 100.0;
+    (0..times).map(|time| format!("{} h", hour(time))).collect()
+}
+
 impl Storm {
     pub fn new(variable: Variable, time: u32, times: u32) -> Self {
-        // One time alone is the grown storm.
-        let age = if times == 1 {
-            1.0
-        } else {
-            f64::from(time) / f64::from(times - 1)
-        };
+        let age = age(time, times);
         Self {
             variable,
             center: DVec2::new(-18.0, -12.0).lerp(DVec2::new(-9.0, -5.0), age),
