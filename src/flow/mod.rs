@@ -33,6 +33,8 @@ mod metric;
 mod seeds;
 mod snapshot;
 mod trace;
+pub mod wind;
+pub mod write;
 
 pub use error::FieldError;
 pub use field::{Absence, Frozen, VectorField};

@@ -57,6 +57,10 @@ pub struct Header {
     pub series: Vec<Series>,
     /// Names of the variables in the file; the one this source reads comes first. Empty where the format has no names.
     pub variables: Vec<String>,
+    /// CF standard names of [`Self::variables`], in their order, empty where one has none. Empty in formats without.
+    pub variable_standard_names: Vec<String>,
+    /// True where heights are those of pressures in the standard atmosphere.
+    pub heights_are_pressures: bool,
     /// What a person should know about how the file was understood, one sentence each.
     pub notes: Vec<String>,
 }
@@ -93,6 +97,8 @@ impl Header {
             time_names: Vec::new(),
             series: Vec::new(),
             variables: Vec::new(),
+            variable_standard_names: Vec::new(),
+            heights_are_pressures: false,
             notes: Vec::new(),
         }
     }

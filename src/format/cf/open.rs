@@ -46,6 +46,7 @@ fn open_checked(
     let mut header = Header::new(format, dims, VoxelType::F32, place.world_from_voxel);
     header.is_earth = place.is_earth;
     header.degree_lengths = place.degrees;
+    header.heights_are_pressures = place.are_pressures;
     header.notes = notes;
     header.notes.extend(place.notes);
     let even = place.uneven.iter().all(Option::is_none);
@@ -92,6 +93,7 @@ pub(super) fn grid(
         is_labels: values.is_labels,
         time_names: time_names(arrays.as_ref(), choice),
         variables: choice.names.clone(),
+        variable_standard_names: choice.standard_names.clone(),
         notes: [header.notes, notes].concat(),
         ..header
     };
