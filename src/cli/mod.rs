@@ -19,6 +19,7 @@ mod devices;
 mod error;
 mod exaggerate;
 mod flags;
+mod flow;
 mod help;
 mod histogram;
 mod info;

@@ -36,6 +36,7 @@ mod trace;
 pub mod wind;
 pub mod write;
 
+pub use atmosphere::height_of_pressure;
 pub use error::FieldError;
 pub use field::{Absence, Frozen, VectorField};
 pub use grid_field::GridField;

@@ -94,7 +94,9 @@ impl FromStr for WindWords {
             _ => return Err(format!("wanted U,V or U,V,W or U,V,none, found {text:?}")),
         };
         if names.iter().any(|name| name.is_empty()) {
-            return Err(format!("wanted the name of a variable at each place, found {text:?}"));
+            return Err(format!(
+                "wanted the name of a variable at each place, found {text:?}"
+            ));
         }
         Ok(Self {
             east: (*east).to_owned(),
@@ -118,14 +120,31 @@ pub struct FlowFlags {
     /// Where lines begin: even[:D] lines that keep a distance, grid:NX,NY,NZ, random:N[,SEED], plane:x|y|z=V,N (N times N),
     /// rake:X,Y,Z,X,Y,Z,N, where:VAR>V,N, or a file .csv of x,y,z[,t] or lon,lat,height|pressure[,t] [default: even; of
     /// particles random:200]
-    #[arg(long, value_name = "SEEDS", requires = "flow", allow_hyphen_values = true, help_heading = "Lines")]
+    #[arg(
+        long,
+        value_name = "SEEDS",
+        requires = "flow",
+        allow_hyphen_values = true,
+        help_heading = "Lines"
+    )]
     pub flow_seeds: Option<Seeds>,
     /// Which way lines go from their seeds [default: both, of particles forward]
-    #[arg(long, value_enum, value_name = "WAY", requires = "flow", help_heading = "Lines")]
+    #[arg(
+        long,
+        value_enum,
+        value_name = "WAY",
+        requires = "flow",
+        help_heading = "Lines"
+    )]
     pub flow_direction: Option<DirectionWord>,
     /// What is written as the value of each vertex and colours tubes: a variable, or for tubes one colour R:G:B, 0 to 1
     /// [default: the true speed]
-    #[arg(long, value_name = "VAR|R:G:B", requires = "flow", help_heading = "Lines")]
+    #[arg(
+        long,
+        value_name = "VAR|R:G:B",
+        requires = "flow",
+        help_heading = "Lines"
+    )]
     pub flow_color: Option<FlowColor>,
     /// Lines are no longer, each way, in world length
     #[arg(long, value_name = "L", value_parser = positive, requires = "flow", help_heading = "Lines")]
@@ -135,12 +154,20 @@ pub struct FlowFlags {
     pub flow_time: Option<f64>,
     /// The variables of the wind: to the east, to the north, upwards [default: by their standard names, then U and V, u and
     /// v ...]
-    #[arg(long, value_name = "U,V[,W|none]", requires = "flow", help_heading = "Lines")]
+    #[arg(
+        long,
+        value_name = "U,V[,W|none]",
+        requires = "flow",
+        help_heading = "Lines"
+    )]
     pub wind: Option<WindWords>,
 }
 
 fn positive(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok().filter(|n: &f64| *n > 0.0 && n.is_finite());
+    let number = text
+        .parse()
+        .ok()
+        .filter(|n: &f64| *n > 0.0 && n.is_finite());
     number.ok_or_else(|| "wanted a number over 0".to_owned())
 }
 

@@ -24,9 +24,13 @@ pub fn heights(variables: &Variables<'_>, header: &Header) -> Result<Option<Vec<
         _ => return Ok(None),
     };
     let standard = header.variable_standard_names.iter();
-    let by_standard = standard.zip(&header.variables).find_map(|(standard, name)| {
-        GROUND_STANDARD.contains(&standard.as_str()).then_some(name.as_str())
-    });
+    let by_standard = standard
+        .zip(&header.variables)
+        .find_map(|(standard, name)| {
+            GROUND_STANDARD
+                .contains(&standard.as_str())
+                .then_some(name.as_str())
+        });
     let named = by_standard.or_else(|| GROUND.into_iter().find(|&name| has(header, name)));
     if let Some(name) = named
         && let Some(ground) = columns(variables, header, name)?
@@ -36,7 +40,10 @@ pub fn heights(variables: &Variables<'_>, header: &Header) -> Result<Option<Vec<
     if !(has(header, "PH") && has(header, "PHB")) {
         return Ok(None);
     }
-    let [first, second] = [lowest(variables, "PH", header)?, lowest(variables, "PHB", header)?];
+    let [first, second] = [
+        lowest(variables, "PH", header)?,
+        lowest(variables, "PHB", header)?,
+    ];
     let (Some(first), Some(second)) = (first, second) else {
         return Ok(None);
     };

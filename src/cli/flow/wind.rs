@@ -62,10 +62,14 @@ pub fn read(
             let volume = variables.read(source.as_ref(), time, *component)?;
             let volume = match is_same_grid(&grid, &volume.grid()) {
                 true => volume,
-                false => regridded(&volume, &grid).map_err(|problem| Error::Input {
-                    path: source.path().to_owned(),
-                    problem: problem.to_string(),
-                })?.0,
+                false => {
+                    regridded(&volume, &grid)
+                        .map_err(|problem| Error::Input {
+                            path: source.path().to_owned(),
+                            problem: problem.to_string(),
+                        })?
+                        .0
+                }
             };
             let mut values = numbers(&volume, factor);
             if ground.is_some() {
@@ -157,7 +161,10 @@ fn vectors(
     progress: &Progress,
 ) -> Result<Components, Error> {
     let holds_vectors = |header: &Header| {
-        let are_colors = matches!(header.meaning, ComponentKind::Rgb | ComponentKind::Channels(_));
+        let are_colors = matches!(
+            header.meaning,
+            ComponentKind::Rgb | ComponentKind::Channels(_)
+        );
         header.components == 3 && !are_colors
     };
     let names = first.header().variables.clone();
@@ -174,7 +181,8 @@ fn vectors(
         }
     }
     let path = variables.input.path.clone().unwrap_or_default();
-    let wanted = "wanted U and V, u and v, their standard names, or one volume of three numbers a voxel";
+    let wanted =
+        "wanted U and V, u and v, their standard names, or one volume of three numbers a voxel";
     let [name] = found.as_slice() else {
         let there = match (found.as_slice(), names.as_slice()) {
             ([], []) => format!("found {} numbers a voxel", first.header().components),
@@ -218,7 +226,9 @@ fn check_grids(components: &Components, east: &Header) -> Result<(), Error> {
         let is_up = k == 1;
         if is_up {
             // Winds between levels have levels of their own, and are brought to those of the others.
-            let [here, there] = [&mut found.world_from_voxel, &mut { wanted.world_from_voxel }];
+            let [here, there] = [&mut found.world_from_voxel, &mut {
+                wanted.world_from_voxel
+            }];
             here.matrix3.z_axis = there.matrix3.z_axis;
             here.translation.z = there.translation.z;
             found.dims[2] = wanted.dims[2];
@@ -259,7 +269,10 @@ fn units(
         let Some((source, _)) = source else { continue };
         let unit = source.header().unit.as_deref();
         let failed = |error: crate::flow::wind::UnitError| {
-            Error::usage(format!("--flow: {error}"), "--wind U,V[,W|none] names other variables")
+            Error::usage(
+                format!("--flow: {error}"),
+                "--wind U,V[,W|none] names other variables",
+            )
         };
         units[k] = WindUnit::of(name, unit, k == 2).map_err(failed)?;
         if unit.is_none() && !silent.contains(name) {
@@ -267,7 +280,10 @@ fn units(
         }
     }
     if !silent.is_empty() && (header.is_earth || header.length_metres.is_some()) {
-        progress.note(&format!("without a unit, and taken as m s-1: {}", silent.join(", ")));
+        progress.note(&format!(
+            "without a unit, and taken as m s-1: {}",
+            silent.join(", ")
+        ));
     }
     let is_in_pressures = units[2].kind == Vertical::Pascals;
     if components.up.is_some() && is_in_pressures && !header.heights_are_pressures {
