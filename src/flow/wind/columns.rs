@@ -29,8 +29,10 @@ mod tests {
         let hole = f32::NAN;
         let mut values = [hole, 1.0, 2.0, hole, 3.0, 4.0, hole, hole];
         filled_down(&mut values, [1, 2, 4], true);
-        assert_eq!(values[..6], [2.0, 1.0, 2.0, 4.0, 3.0, 4.0]);
-        assert!(values[6..].iter().all(|v| v.is_nan()));
+        assert_eq!(values[..3], [2.0, 1.0, 2.0]);
+        assert_eq!(values[4..6], [3.0, 4.0]);
+        // A hole between numbers, and one over them.
+        assert!([3, 6, 7].iter().all(|&i: &usize| values[i].is_nan()));
         let mut falling = [hole, 5.0, hole];
         filled_down(&mut falling, [1, 1, 3], false);
         assert!(falling[0].is_nan() && falling[1..] == [5.0, 5.0]);
