@@ -81,7 +81,7 @@ enum Verb {
     Animate(Box<animate::Animate>),
     Thumbnails(Box<thumbnails::Thumbnails>),
     Info(Box<info::Info>),
-    Convert(convert::Convert),
+    Convert(Box<convert::Convert>),
     Devices(devices::Devices),
     Compare(compare::Compare),
     Bench(Box<bench::Bench>),

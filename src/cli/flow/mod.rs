@@ -4,9 +4,11 @@
 //! wind -> seeds -> lines -> values -> .vtp, .csv or .glb
 //! ```
 
+mod components;
 mod flags;
 mod ground;
 mod seeds;
+mod tubes;
 mod value;
 mod variable;
 mod wind;
@@ -14,17 +16,15 @@ mod wind;
 pub use flags::FlowFlags;
 
 use super::{Error, exaggerate, flags::InputFlags, progress::Progress, signals::Gate};
-use crate::flow::write::{Geography, LineValues, tubes, write_csv, write_vtp};
+use crate::flow::write::{Geography, LineValues, write_csv, write_vtp};
 use crate::flow::{
     Direction, End, EvenLines, Limits, Line, Seeds, even_stream_lines, path_lines_from,
     streak_lines, stream_lines,
 };
-use crate::mesh::MeshFormat;
 use crate::picture::{OutputError, OutputFile, OutputProblem};
-use crate::transfer::Colormap;
 use flags::{FlowColor, FlowWord};
-use glam::{DVec3, Vec3};
-use std::io::{self, BufWriter, Write};
+use glam::DVec3;
+use std::io::{BufWriter, Write};
 use std::path::Path;
 use variable::Variables;
 use wind::Wind;
@@ -34,11 +34,6 @@ const PARTICLES: Seeds = Seeds::Random {
     count: 200,
     seed: 0,
 };
-/// A tube's radius as a part of the box's diagonal.
-const RADIUS: f64 = 1e-3;
-/// Colours span up to the value that this part of the vertices does not exceed.
-const MOST: f64 = 0.999;
-
 /// A kind of file for lines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum LineFormat {
@@ -121,7 +116,13 @@ impl FlowFlags {
         let written = match format {
             LineFormat::Vtp => write_vtp(&lines, &values, &mut out),
             LineFormat::Csv => write_csv(&lines, &values, geography(&wind), &mut out),
-            LineFormat::Glb => self.write_tubes(&lines, &values, &wind, &mut out),
+            LineFormat::Glb => {
+                let one = match self.flow_color {
+                    Some(FlowColor::One(color)) => Some(color),
+                    _ => None,
+                };
+                tubes::write_tubes(&lines, &values, wind.grid.diagonal(), one, &mut out)
+            }
         };
         let outcome = written.and_then(|()| out.flush());
         drop(out);
@@ -250,55 +251,6 @@ impl FlowFlags {
             ));
         }
         Ok(lines)
-    }
-
-    fn write_tubes(
-        &self,
-        lines: &[Line],
-        values: &LineValues,
-        wind: &Wind,
-        out: &mut impl Write,
-    ) -> io::Result<()> {
-        let [low, high] = range(values);
-        let map = Colormap::from_name("wind");
-        let color = |line: usize, vertex: usize| {
-            if let Some(FlowColor::One(color)) = self.flow_color {
-                return Vec3::from_array(color.map(linear_of_srgb));
-            }
-            let value = values.numbers[line][vertex];
-            let part = ((value - low) / (high - low)).clamp(0.0, 1.0);
-            match map.filter(|_| part.is_finite()) {
-                Some(map) => Vec3::from_array(map.srgb(part).map(|n| linear_of_srgb(n as f32))),
-                None => Vec3::splat(0.5),
-            }
-        };
-        let mesh = tubes(lines, RADIUS * wind.grid.diagonal(), color).ok_or_else(|| {
-            io::Error::new(
-                io::ErrorKind::InvalidData,
-                "more than 2^32 corners of tubes",
-            )
-        })?;
-        mesh.write(MeshFormat::Glb, out)
-    }
-}
-
-/// From 0, or the lowest value where it is under that, to what few vertices exceed.
-fn range(values: &LineValues) -> [f64; 2] {
-    let all = values.numbers.iter().flatten().copied();
-    let mut all: Vec<f64> = all.filter(|n| n.is_finite()).collect();
-    if all.is_empty() {
-        return [0.0, 1.0];
-    }
-    all.sort_by(f64::total_cmp);
-    let low = if values.name == "speed" { 0.0 } else { all[0] };
-    let high = all[(MOST * (all.len() - 1) as f64) as usize];
-    [low, if high > low { high } else { low + 1.0 }]
-}
-
-fn linear_of_srgb(n: f32) -> f32 {
-    match n <= 0.040_45 {
-        true => n / 12.92,
-        false => ((n + 0.055) / 1.055).powf(2.4),
     }
 }
 

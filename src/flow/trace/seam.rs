@@ -52,25 +52,4 @@ pub(super) fn split(way: Vec<Vertex>, seam: Option<[f64; 2]>) -> (Vec<Vertex>, V
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use glam::dvec3;
-
-    #[test]
-    fn a_way_over_the_seam_is_in_pieces_that_meet_it() {
-        let vertex = |x: f64| Vertex {
-            place: dvec3(x, 2.0 * x, 0.0),
-            time: x,
-            speed: 1.0,
-        };
-        let way = [8.0, 9.5, 10.5, 11.0, 9.75].map(vertex).to_vec();
-        assert_eq!(split(way.clone(), None), (way.clone(), vec![]));
-        let (vertices, breaks) = split(way, Some([0.0, 10.0]));
-        let xs: Vec<f64> = vertices.iter().map(|v| v.place.x).collect();
-        assert_eq!(xs, [8.0, 9.5, 10.0, 0.0, 0.5, 1.0, 0.0, 10.0, 9.75]);
-        assert_eq!(breaks, [3, 7]);
-        // Other coordinates and the time go on.
-        assert_eq!((vertices[2].place.y, vertices[3].time), (20.0, 10.0));
-        assert_eq!((vertices[7].place.y, vertices[6].time), (20.0, 10.0));
-    }
-}
+mod tests;

@@ -106,3 +106,6 @@ fn end_of(
         _ => Err(end),
     }
 }
+
+#[cfg(test)]
+mod tests;

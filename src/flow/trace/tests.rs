@@ -3,7 +3,7 @@
 use super::{in_order, line};
 use crate::flow::{
     Absence, Direction, End, GridField, Horizontal, Limits, Line, Metric, Snapshot, VectorField,
-    Vertical, path_lines, streak_lines, stream_lines,
+    Vertical, path_lines, stream_lines,
 };
 use crate::volume::Grid;
 use glam::{DAffine3, DVec3, dvec3};
@@ -204,18 +204,9 @@ fn any_number_of_threads_makes_the_same_lines() {
                 )
         })
         .collect();
-    let by = |threads| {
-        in_order(seeds.len(), threads, |seed| {
-            line(
-                &field,
-                (0.0, seeds[seed]),
-                seed,
-                Direction::Both,
-                &Limits::default(),
-                None,
-            )
-        })
-    };
+    let limits = Limits::default();
+    let make = |i: usize| line(&field, (0.0, seeds[i]), i, Direction::Both, &limits, None);
+    let by = |threads| in_order(seeds.len(), threads, make);
     let one = by(1);
     assert_eq!(one.len(), 200);
     assert!(one.iter().enumerate().all(|(i, line)| line.seed == i));
@@ -300,108 +291,4 @@ fn on_a_globe_degrees_of_longitude_shrink_and_lines_end_before_the_pole() {
     assert_eq!(line.ends[1], Some(End::Absence(Absence::Pole)));
     let end = line.vertices.last().expect("vertices").place.y / per_degree;
     assert!((89.0 - 1e-3..=89.0).contains(&end), "{end}");
-}
-
-/// v = (1, cos t, 0), a snapshot each 1/64 s. Linear between snapshots the integral of cos is off by dt^2 / 12 of the change
-/// of its derivative at most.
-#[test]
-fn path_streak_and_stream_lines_of_one_wind_are_three_curves() {
-    let grid = grid([12, 12, 4]);
-    let dt = 1.0 / 64.0;
-    let snapshots = (0..=5 * 64).map(|i| {
-        let t = f64::from(i) * dt;
-        let wind = Snapshot::from_fn(&grid, move |_| Some([1.0, t.cos() as f32, 0.0]));
-        (t, wind)
-    });
-    let field = GridField::new(grid, snapshots.collect(), Metric::plain(1.0)).expect("a field");
-    let seed = dvec3(1.0, 6.0, 2.0);
-    // And f32, the tolerance of steps, and chords.
-    let near = dt * dt / 12.0 * 2.0 + 1e-6;
-    let limits = Limits::default();
-    let path = path_lines(&field, 0.0, &[seed], Direction::Forward, &limits).remove(0);
-    let streak = streak_lines(&field, [0.0, 5.0], &[seed], &limits).remove(0);
-    let stream = stream_lines(&field, 5.0, &[seed], Direction::Forward, &limits).remove(0);
-    for vertex in &path.vertices {
-        let q = vertex.place - seed;
-        assert!(
-            (q.x - vertex.time).abs() < near && (q.y - q.x.sin()).abs() < near,
-            "{q}"
-        );
-    }
-    assert_eq!(streak.ends, [Some(End::Time); 2]);
-    assert_eq!(streak.vertices[0].time, 0.0, "the oldest first");
-    for vertex in &streak.vertices {
-        let q = vertex.place - seed;
-        assert!((q.x - (5.0 - vertex.time)).abs() < near, "{q}");
-        assert!((q.y - (5f64.sin() - (5.0 - q.x).sin())).abs() < near, "{q}");
-    }
-    for vertex in &stream.vertices {
-        let q = vertex.place - seed;
-        assert!((q.y - q.x * 5f64.cos()).abs() < 1e-6, "{q}");
-    }
-    for pair in streak.vertices.windows(2) {
-        assert!((pair[1].place - pair[0].place).abs().max_element() <= 1.0);
-    }
-    // Smoke that has left the box is no part of the line, and the reason is kept.
-    let gone = streak_lines(&field, [0.0, 5.0], &[dvec3(9.0, 6.0, 2.0)], &limits).remove(0);
-    assert_eq!(gone.ends[0], Some(End::Absence(Absence::Domain)));
-    assert!(
-        gone.vertices
-            .iter()
-            .all(|v| v.place.x <= 12.0 && v.time > 1.9)
-    );
-    assert!(gone.vertices.last().is_some_and(|v| v.place.x == 9.0));
-}
-
-/// Once around the equator in pieces, closed where it began, with no chord over the map.
-#[test]
-fn a_line_goes_on_at_the_other_side_of_a_closed_globe() {
-    let per_degree = 111.0;
-    let affine = DAffine3::from_mat3_translation(
-        glam::DMat3::from_diagonal(dvec3(5.0 * per_degree, 5.0 * per_degree, 1.0)),
-        dvec3(-2.5 * per_degree, -42.5 * per_degree, 0.0),
-    );
-    let metric = Metric {
-        world_per_metre: 1e-3,
-        horizontal: Horizontal::Degrees {
-            x: per_degree,
-            y: per_degree,
-        },
-        vertical: Vertical::Metres,
-    };
-    let field = |columns: u32| {
-        let grid = Grid {
-            dims: [columns, 17, 2],
-            world_from_voxel: affine,
-        };
-        // Faster in the east, so that the wind at the seam is that of neither side.
-        let wind = Snapshot::from_fn(&grid, move |[x, ..]| {
-            Some([10.0 + 0.1 * x as f32, 0.0, 0.0])
-        });
-        GridField::new(grid, vec![(0.0, wind)], metric.clone()).expect("a field")
-    };
-    let seed = dvec3(300.0 * per_degree, 0.0, 1.0);
-    let line = one(&field(72), seed, Direction::Forward, &Limits::default());
-    assert_eq!(line.ends, [None, Some(End::Closed)]);
-    assert_eq!(line.breaks.len(), 1);
-    let pieces: Vec<_> = line.pieces().collect();
-    let [low, high] = [-2.5, 357.5].map(|x| x * per_degree);
-    let ends =
-        [pieces[0], pieces[1]].map(|piece| [piece[0], piece[piece.len() - 1]].map(|v| v.place.x));
-    assert_eq!(ends, [[seed.x, high], [low, seed.x]]);
-    for pair in pieces.iter().flat_map(|piece| piece.windows(2)) {
-        assert!(
-            (pair[1].place.x - pair[0].place.x).abs() < 6.0 * per_degree,
-            "a chord"
-        );
-    }
-    // At the seam the wind is half of 17.1 and half of 10.
-    let speed = field(72)
-        .speed(0.0, dvec3(high, 0.0, 1.0))
-        .expect("a speed");
-    assert!((speed - 13.55).abs() < 1e-4, "{speed}");
-    // A grid of 355 degrees ends.
-    let line = one(&field(71), seed, Direction::Forward, &Limits::default());
-    assert_eq!(line.ends[1], Some(End::Absence(Absence::Domain)));
-    assert!(line.breaks.is_empty());
 }
