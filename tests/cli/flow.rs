@@ -122,6 +122,10 @@ fn particles_and_smoke_go_through_the_times_of_a_file() {
             "convert {file} -o {word}.csv --flow {word} --flow-seeds seeds.csv --flow-time 30min --wind U,V,none"
         ));
         ran.assert_done();
+        let warns = ran
+            .err
+            .contains("snapshots are far apart: path lines are uncertain");
+        assert_eq!(warns, word == "path", "{ran:#?}");
         assert!(
             ran.err.contains("without a unit, and taken as m s-1: U, V"),
             "{ran:#?}"

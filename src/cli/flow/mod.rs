@@ -4,6 +4,7 @@
 //! wind -> seeds -> lines -> values -> .vtp, .csv or .glb
 //! ```
 
+mod causes;
 mod components;
 mod flags;
 mod ground;
@@ -18,8 +19,8 @@ pub use flags::FlowFlags;
 use super::{Error, exaggerate, flags::InputFlags, progress::Progress, signals::Gate};
 use crate::flow::write::{Geography, LineValues, write_csv, write_vtp};
 use crate::flow::{
-    Direction, End, EvenLines, Limits, Line, Seeds, even_stream_lines, path_lines_from,
-    streak_lines, stream_lines,
+    Direction, EvenLines, Limits, Line, Seeds, even_stream_lines, path_lines_from, streak_lines,
+    stream_lines,
 };
 use crate::picture::{OutputError, OutputFile, OutputProblem};
 use flags::{FlowColor, FlowWord};
@@ -99,11 +100,14 @@ impl FlowFlags {
         let limits = input.limits();
         let variables = Variables { input, limits };
         let is_of_particles = word != FlowWord::Stream;
-        let wind = wind::read(&variables, self.wind.as_ref(), is_of_particles, progress)?;
+        let wind = wind::read(&variables, self.wind.as_ref(), word, progress)?;
         let start = self.start(word, input, &wind)?;
         progress.stage("trace", 0, 1);
         let lines = self.lines(word, &wind, start, &variables, progress)?;
-        say_causes(&lines, progress);
+        causes::say(&lines, progress);
+        if word == FlowWord::Path {
+            causes::say_displacement(&lines, &wind, progress);
+        }
         let at = |time: f64| if is_of_particles { time } else { start };
         let values = match &self.flow_color {
             Some(FlowColor::Variable(name)) => value::along(&lines, name, &wind, at, &variables)?,
@@ -263,21 +267,4 @@ fn geography(wind: &Wind) -> Geography {
         },
         height: header.length_metres.filter(|_| header.is_earth),
     }
-}
-
-/// How many lines there are, and how often each cause ended one.
-fn say_causes(lines: &[Line], progress: &Progress) {
-    let vertices: usize = lines.iter().map(|line| line.vertices.len()).sum();
-    let drawn = lines.iter().filter(|line| line.pieces().next().is_some());
-    let counts = End::ALL.into_iter().filter_map(|cause| {
-        let ends = lines.iter().flat_map(|line| line.ends).flatten();
-        let count = ends.filter(|&end| end == cause).count();
-        (count > 0).then(|| format!("{} {count}", cause.name()))
-    });
-    let counts: Vec<String> = counts.collect();
-    progress.note(&format!(
-        "{} lines of {vertices} vertices; ends: {}",
-        drawn.count(),
-        counts.join(", ")
-    ));
 }

@@ -6,7 +6,7 @@
 
 use super::super::{Error, progress::Progress};
 use super::components::{Components, check_grids, components, grid_of};
-use super::flags::WindWords;
+use super::flags::{FlowWord, WindWords};
 use super::ground;
 use super::variable::{Variables, numbers};
 use crate::flow::wind::{WindUnit, filled_down, metric_of, seconds_since_first};
@@ -22,11 +22,11 @@ pub struct Wind {
     pub times: Vec<(u32, f64)>,
 }
 
-/// Reads the wind at all times, or at the one of the words.
+/// Reads the wind at all times of particles, and at the one of the words for stream lines.
 pub fn read(
     variables: &Variables<'_>,
     words: Option<&WindWords>,
-    all_times: bool,
+    word: FlowWord,
     progress: &Progress,
 ) -> Result<Wind, Error> {
     let components = components(variables, words, progress)?;
@@ -37,7 +37,7 @@ pub fn read(
         progress.note(note);
     }
     let (units, up) = units(&components, &header, progress)?;
-    let times = times(variables, &header, all_times, progress)?;
+    let times = times(variables, &header, word, progress)?;
     let voxels = header.voxel_count();
     let wanted = voxels.saturating_mul(12 * times.len() as u64 + 12);
     if wanted > variables.limits.max_bytes {
@@ -148,18 +148,18 @@ fn units(
 fn times(
     variables: &Variables<'_>,
     header: &Header,
-    all: bool,
+    word: FlowWord,
     progress: &Progress,
 ) -> Result<Vec<(u32, f64)>, Error> {
     let seconds = seconds_since_first(&header.time_names);
-    if !all {
+    if word == FlowWord::Stream {
         let (time, note) = variables.input.time(header)?;
         note.iter().for_each(|note| progress.note(note));
         return Ok(vec![(time, 0.0)]);
     }
     if header.times < 2 {
         return Err(Error::usage(
-            "--flow path: the input has one time",
+            format!("--flow {}: the input has one time", word.name()),
             "--flow stream",
         ));
     }
@@ -168,7 +168,10 @@ fn times(
     });
     let seconds = seconds.ok_or_else(|| {
         Error::usage(
-            "--flow path: the times of the input have no dates that grow",
+            format!(
+                "--flow {}: the times of the input have no dates that grow",
+                word.name()
+            ),
             "--flow stream",
         )
     })?;

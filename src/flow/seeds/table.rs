@@ -170,6 +170,7 @@ mod tests {
     fn what_is_wrong_is_said_with_the_line() {
         let said = |text: &str| SeedTable::of(text).expect_err(text).to_string();
         assert_eq!(said("1,2,3\n\n1,2"), "line 3: 3 numbers wanted, found 2");
+        assert_eq!(said("1,2"), "line 1: 3 numbers wanted, found 2");
         assert_eq!(said("1,2,3,4\n1,2,3"), "line 2: 4 numbers wanted, found 3");
         assert_eq!(
             said("1,2,inf"),
