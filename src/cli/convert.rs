@@ -3,6 +3,7 @@
 use super::{
     Error,
     flags::{InputFlags, Numbers},
+    flow::FlowFlags,
     output,
     progress::{Progress, ProgressWord},
     resume_check::{hash_of, stamp_of},
@@ -37,13 +38,15 @@ use std::{
     stratavox convert phantom:head -o bone.nii.gz --type u8 --window=-200,800\n  \
     stratavox convert phantom:shells,n=64 -o shells.npy --type f32\n  \
     stratavox convert phantom:head -o head.svb --resume\n  \
-    stratavox convert phantom:head,n=64 -o skull.ply --iso 300"
+    stratavox convert phantom:head,n=64 -o skull.ply --iso 300\n  \
+    stratavox convert phantom:storm,n=32 -o updraft.vtp --flow stream --flow-seeds 'where:w>5,100'\n  \
+    stratavox convert phantom:storm,n=32 -o tubes.glb --flow stream"
 )]
 pub struct Convert {
     #[command(flatten)]
     input: InputFlags,
     /// The file: .nrrd, .mha, .nii, .nii.gz, .npy, or .svb of bricks and coarser levels, for volumes larger than the
-    /// memory; for a surface .ply, .stl or .glb
+    /// memory; for a surface .ply, .stl or .glb; for lines .vtp, .csv or .glb
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Keep this box of whole voxels
@@ -72,6 +75,8 @@ pub struct Convert {
     /// Close the surface where the volume ends, as printers of solids want it
     #[arg(long, requires = "iso", help_heading = "Surface")]
     closed: bool,
+    #[command(flatten)]
+    flow: FlowFlags,
     /// Go on with a .svb where a run before was stopped; the file is that of one that was not
     #[arg(long, conflicts_with = "iso")]
     resume: bool,
@@ -98,6 +103,14 @@ fn voxel_type(word: &str) -> Result<VoxelType, String> {
 impl Convert {
     /// Reads and writes.
     pub fn run(self, gate: &Gate) -> Result<(), Error> {
+        if let Some(word) = self.flow.flow {
+            self.flow.check(&self.output)?;
+            let inputs: Vec<PathBuf> = self.input.file().map(Path::to_owned).into_iter().collect();
+            output::check(std::slice::from_ref(&self.output), &inputs, self.force)?;
+            let progress = Progress::new(self.progress);
+            let (path, force) = (&self.output, self.force);
+            return (self.flow).write(word, &self.input, path, force, &progress, gate);
+        }
         if let Some(surface) = self.surface()? {
             let inputs: Vec<PathBuf> = self.input.file().map(Path::to_owned).into_iter().collect();
             output::check(std::slice::from_ref(&self.output), &inputs, self.force)?;

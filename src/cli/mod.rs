@@ -19,6 +19,7 @@ mod devices;
 mod error;
 mod exaggerate;
 mod flags;
+mod flow;
 mod help;
 mod histogram;
 mod info;
@@ -80,7 +81,7 @@ enum Verb {
     Animate(Box<animate::Animate>),
     Thumbnails(Box<thumbnails::Thumbnails>),
     Info(Box<info::Info>),
-    Convert(convert::Convert),
+    Convert(Box<convert::Convert>),
     Devices(devices::Devices),
     Compare(compare::Compare),
     Bench(Box<bench::Bench>),

@@ -43,6 +43,24 @@ pub(super) fn metres_per_pascal(height: f64) -> f64 {
     -AIR * temperature / (GRAVITY * pressure)
 }
 
+/// Height in m of a pressure in Pa in the standard atmosphere; `None` where it is not over 0.
+///
+/// ```text
+/// h = h0 + T0/L ((p/p0)^(-R L / g) - 1),   and where L is 0   h = h0 - R T0 / g ln(p/p0)
+/// ```
+pub fn height_of_pressure(pressure: f64) -> Option<f64> {
+    if !(pressure > 0.0 && pressure.is_finite()) {
+        return None;
+    }
+    let layer = LAYERS.iter().rev().find(|layer| pressure <= layer[3]);
+    let [bottom, warmth, lapse, at_bottom] = *layer.unwrap_or(&LAYERS[0]);
+    let ratio = pressure / at_bottom;
+    Some(match lapse == 0.0 {
+        true => bottom - AIR * warmth / GRAVITY * ratio.ln(),
+        false => bottom + warmth / lapse * (ratio.powf(-AIR * lapse / GRAVITY) - 1.0),
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -66,6 +84,20 @@ mod tests {
                 "{pressure} Pa: {found} {slope}"
             );
         }
+    }
+
+    #[test]
+    fn the_height_of_a_pressure_has_that_pressure() {
+        for pressure in [
+            101_325.0, 95_000.0, 50_000.0, 15_000.0, 3_000.0, 500.0, 20.0,
+        ] {
+            let height = height_of_pressure(pressure).expect("a height");
+            assert!(
+                (state(height)[1] / pressure - 1.0).abs() < 1e-5,
+                "{pressure}"
+            );
+        }
+        assert_eq!(height_of_pressure(0.0), None);
     }
 
     #[test]

@@ -49,6 +49,12 @@ pub trait VectorField: Sync {
         None
     }
 
+    /// World x of both sides of the seam of a field that goes around the globe: places beyond one side are those that lie as
+    /// far from the other. `None` where the field ends along x.
+    fn seam(&self) -> Option<[f64; 2]> {
+        None
+    }
+
     /// A speed that few places exceed, world length per second: a line that is a million times slower stagnates.
     fn fast_speed(&self) -> f64 {
         0.0
@@ -80,6 +86,10 @@ impl<F: VectorField + ?Sized> VectorField for Frozen<'_, F> {
 
     fn speed(&self, _: f64, place: DVec3) -> Result<f64, Absence> {
         self.field.speed(self.time, place)
+    }
+
+    fn seam(&self) -> Option<[f64; 2]> {
+        self.field.seam()
     }
 
     fn fast_speed(&self) -> f64 {

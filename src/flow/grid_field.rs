@@ -4,6 +4,7 @@
 //! v(t, p) = M(p) lerp(wind_a(A p), wind_b(A p), (t - t_a) / (t_b - t_a)),  t_a <= t <= t_b two snapshots
 //! ```
 //!
+//! Columns of degrees that close around the globe are neighbours across the seam.
 //! A takes the world to voxels, M is the metric. Before the first snapshot and behind the last the wind is that of it.
 
 use super::error::FieldError;
@@ -24,6 +25,8 @@ pub struct GridField {
     /// Heights of the ground, world.
     ground: Option<Columns>,
     off_poles: [f64; 2],
+    /// Its first column is the neighbour of its last one.
+    seam: Option<[f64; 2]>,
     fast_speed: f64,
 }
 
@@ -63,6 +66,7 @@ impl GridField {
             times,
             snapshots,
             off_poles: metric.off_poles(&grid),
+            seam: metric.seam(&grid),
             metric,
             ground: None,
             fast_speed: 0.0,
@@ -109,7 +113,11 @@ impl GridField {
     /// The wind at a place, and the place in voxels.
     #[inline]
     fn wind(&self, time: f64, place: DVec3) -> Result<([f64; 3], [f64; 3]), Absence> {
-        let voxel = self.voxel_from_world.transform_point3(place);
+        let mut voxel = self.voxel_from_world.transform_point3(place);
+        let is_around = self.seam.is_some();
+        if is_around {
+            voxel.x = voxel.x.rem_euclid(f64::from(self.grid.dims[0]));
+        }
         let end = DVec3::from(self.grid.dims.map(f64::from));
         if !(voxel.cmpge(DVec3::ZERO).all() && voxel.cmple(end).all()) {
             return Err(Absence::Domain);
@@ -122,17 +130,21 @@ impl GridField {
         if self
             .ground
             .as_ref()
-            .is_some_and(|ground| place.z < ground.at(voxel))
+            .is_some_and(|ground| place.z < ground.at(voxel, is_around))
         {
             return Err(Absence::Ground);
         }
         let above = self.times.partition_point(|&t| t <= time);
         let [a, b] = [above.saturating_sub(1), above.min(self.times.len() - 1)];
-        let first = self.snapshots[a].at(voxel).ok_or(Absence::NoData)?;
+        let first = self.snapshots[a]
+            .at(voxel, is_around)
+            .ok_or(Absence::NoData)?;
         if a == b || time <= self.times[a] {
             return Ok((first, voxel));
         }
-        let second = self.snapshots[b].at(voxel).ok_or(Absence::NoData)?;
+        let second = self.snapshots[b]
+            .at(voxel, is_around)
+            .ok_or(Absence::NoData)?;
         let part = (time - self.times[a]) / (self.times[b] - self.times[a]);
         Ok((
             [0, 1, 2].map(|k| first[k] + part * (second[k] - first[k])),
@@ -169,6 +181,10 @@ impl VectorField for GridField {
             true => self.times.iter().find(|&&t| t > time).copied(),
             false => self.times.iter().rev().find(|&&t| t < time).copied(),
         }
+    }
+
+    fn seam(&self) -> Option<[f64; 2]> {
+        self.seam
     }
 
     fn fast_speed(&self) -> f64 {

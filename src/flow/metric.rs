@@ -14,6 +14,7 @@ use super::error::FieldError;
 use super::snapshot::Columns;
 use crate::volume::Grid;
 use glam::{DMat3, DVec3};
+use std::f64::consts::TAU;
 
 /// Where the components of the wind point, and how the map of the world stretches them.
 #[derive(Clone, Debug, PartialEq)]
@@ -162,6 +163,24 @@ impl GridMetric {
         })
     }
 
+    /// World x of both sides of a grid of degrees that closes around the globe: 360 of them, to a thousandth of a
+    /// step, as coordinates of 32 bits have them.
+    pub fn seam(&self, grid: &Grid) -> Option<[f64; 2]> {
+        let Stretch::Degrees {
+            radians_per_world,
+            middle_cosine,
+        } = self.stretch
+        else {
+            return None;
+        };
+        let step = grid.world_from_voxel.matrix3.x_axis.x;
+        let around = TAU * middle_cosine / radians_per_world;
+        let sides = [0.0, f64::from(grid.dims[0])];
+        let sides = sides.map(|x| grid.world_from_voxel.transform_point3(x * DVec3::X).x);
+        let [low, high] = [sides[0].min(sides[1]), sides[0].max(sides[1])];
+        ((high - low - around).abs() <= 1e-3 * step.abs()).then_some([low, high])
+    }
+
     /// World length per second of m/s (or Pa/s upward), at a place of the world that has this one in voxels.
     #[inline]
     pub fn velocity(&self, wind: [f64; 3], place: DVec3, voxel: [f64; 3]) -> DVec3 {
@@ -169,7 +188,7 @@ impl GridMetric {
         let w = self.metres_up(wind, place);
         let [fx, fy] = match &self.stretch {
             Stretch::None => [1.0; 2],
-            Stretch::Map(factors) => factors.each_ref().map(|f| f.at(voxel)),
+            Stretch::Map(factors) => factors.each_ref().map(|f| f.at(voxel, false)),
             Stretch::Degrees {
                 radians_per_world,
                 middle_cosine,

@@ -1,9 +1,10 @@
-//! Stream and path lines of a velocity field.
+//! Stream, path and streak lines of a velocity field.
 //!
 //! ```text
 //! dx/dt = v(t, x)
 //! stream line    the solution with t held in v: tangent to the velocity of one instant
 //! path line      the solution: the way of one particle
+//! streak line    where all particles are that left one place so far
 //! ```
 //!
 //! Places are those of the drawn world before heights are exaggerated. Knows nothing of files that it reads, and nothing
@@ -29,13 +30,21 @@ mod field;
 mod grid_field;
 mod line;
 mod metric;
+mod seeds;
 mod snapshot;
 mod trace;
+pub mod wind;
+pub mod write;
 
+pub use atmosphere::height_of_pressure;
 pub use error::FieldError;
 pub use field::{Absence, Frozen, VectorField};
 pub use grid_field::GridField;
 pub use line::{Direction, End, Limits, Line, Vertex};
 pub use metric::{Horizontal, Metric, Vertical};
+pub use seeds::{
+    Axis, Comparison, EvenLines, Seed, SeedPlace, SeedTable, Seeds, SeedsError, TableError,
+    even_stream_lines, grid_seeds, plane_seeds, rake_seeds, random_seeds, seeds_where,
+};
 pub use snapshot::{Component, Snapshot};
-pub use trace::{path_lines, stream_lines};
+pub use trace::{path_lines, path_lines_from, streak_lines, stream_lines};

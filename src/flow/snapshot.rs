@@ -90,11 +90,12 @@ impl Snapshot {
         Some(self.nodes[index]).filter(|wind| !wind[0].is_nan())
     }
 
-    /// The wind at a place of voxel space; `None` where there is no data.
+    /// The wind at a place of voxel space; `None` where there is no data. `is_around` where the first column is the neighbour
+    /// of the last one.
     #[inline]
-    pub(super) fn at(&self, place: [f64; 3]) -> Option<[f64; 3]> {
+    pub(super) fn at(&self, place: [f64; 3], is_around: bool) -> Option<[f64; 3]> {
         let [x, y, z] = [
-            Taps::new(place[0], self.dims[0]),
+            Taps::along_x(place[0], self.dims[0], is_around),
             Taps::new(place[1], self.dims[1]),
             Taps::new(place[2], self.dims[2]),
         ];
@@ -176,6 +177,21 @@ impl Taps {
         }
     }
 
+    /// The same, around the globe where x has no end.
+    #[inline]
+    pub fn along_x(place: f64, count: usize, is_around: bool) -> Self {
+        let taps = Self::new(place, count);
+        if !is_around {
+            return taps;
+        }
+        let first = (place - 0.5).floor() as i64;
+        let around = |voxel: i64| voxel.rem_euclid(count as i64) as usize;
+        Self {
+            voxels: [around(first), around(first + 1)],
+            ..taps
+        }
+    }
+
     fn weights(&self) -> [f64; 2] {
         [1.0 - self.fraction, self.fraction]
     }
@@ -198,8 +214,8 @@ impl Columns {
 
     /// Bilinear, in voxel space.
     #[inline]
-    pub fn at(&self, [x, y, _]: [f64; 3]) -> f64 {
-        let x = Taps::new(x, self.dims[0]);
+    pub fn at(&self, [x, y, _]: [f64; 3], is_around: bool) -> f64 {
+        let x = Taps::along_x(x, self.dims[0], is_around);
         let y = Taps::new(y, self.dims[1]);
         let row = |row: usize| {
             let [a, b] = x

@@ -1,34 +1,24 @@
-//! Lines from seeds, step by step.
+//! Lines from seeds: those of an instant, those of particles, and those of smoke.
 //!
 //! ```text
-//! h = half a cell at first,  <= one cell of the velocity there,  <= rest of the time,  <= next snapshot
-//! error e in cells over the tolerance:  e <= 1 accept, else a shorter step;  a stage without velocity: half of it,
-//! until it is under a thousandth of a cell: the line ends there
+//! stream line    dx/ds = v(t, x),  t held                 tangent to the velocity of one instant
+//! path line      dx/dt = v(t, x)                          the way of one particle
+//! streak line    x(T) of the particles that left the seed at t <= T
 //! ```
-//!
-//! A trilinear field has kinks at the faces of cells, which the estimate of the error misses in longer steps. Between its ends a
-//! step leaves vertices so that a chord is within a twentieth of a cell of the way.
 
-use super::dormand_prince::{Controller, Step, step};
-use super::field::{Absence, Frozen, VectorField};
-use super::line::{Direction, End, Limits, Line, Vertex};
-use glam::{DMat3, DVec3};
+mod seam;
+mod streak;
+mod walk;
+
+pub use streak::streak_lines;
+
+use super::field::{Frozen, VectorField};
+use super::line::{Direction, End, Limits, Line};
+use super::seeds::Crowd;
+use glam::DVec3;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use walk::Walk;
 
-/// A step that is shorter, in cells, is none.
-const SHORTEST: f64 = 1e-3;
-/// What a chord may be off by, in cells.
-const CHORD: f64 = 0.05;
-/// A step has no more chords.
-const MOST_CHORDS: f64 = 16.0;
-/// A line is closed this near to its seed, in cells, and after so many of them.
-const CLOSED: f64 = 0.1;
-const CLOSED_AFTER: f64 = 4.0;
-/// This part of a fast speed is none, over so many steps.
-const STAGNANT: f64 = 1e-6;
-const STAGNANT_STEPS: u32 = 8;
-/// So many tolerances from where a line is, it has not moved: near a sink steps only find its place anew.
-const UNMOVED: f64 = 10.0;
 /// Seeds that a thread takes at once.
 const BLOCK: usize = 64;
 
@@ -40,14 +30,10 @@ pub fn stream_lines(
     direction: Direction,
     limits: &Limits,
 ) -> Vec<Line> {
-    lines(
-        &Frozen::new(field, time),
-        0.0,
-        seeds,
-        direction,
-        limits,
-        threads(),
-    )
+    let frozen = Frozen::new(field, time);
+    in_order(seeds.len(), threads(), |seed| {
+        line(&frozen, (0.0, seeds[seed]), seed, direction, limits, None)
+    })
 }
 
 /// Path lines of particles that are at the seeds at `time`.
@@ -58,22 +44,42 @@ pub fn path_lines(
     direction: Direction,
     limits: &Limits,
 ) -> Vec<Line> {
-    lines(field, time, seeds, direction, limits, threads())
+    let seeds: Vec<_> = seeds.iter().map(|&seed| (time, seed)).collect();
+    path_lines_from(field, &seeds, direction, limits)
+}
+
+/// Path lines of particles that are at the seeds each at a time of its own, in seconds.
+pub fn path_lines_from(
+    field: &impl VectorField,
+    seeds: &[(f64, DVec3)],
+    direction: Direction,
+    limits: &Limits,
+) -> Vec<Line> {
+    in_order(seeds.len(), threads(), |seed| {
+        line(field, seeds[seed], seed, direction, limits, None)
+    })
+}
+
+/// One stream line that keeps away from others.
+pub(super) fn stream_line_among(
+    field: &impl VectorField,
+    time: f64,
+    start: DVec3,
+    direction: Direction,
+    limits: &Limits,
+    crowd: &Crowd,
+) -> Line {
+    let frozen = Frozen::new(field, time);
+    line(&frozen, (0.0, start), 0, direction, limits, Some(crowd))
 }
 
 fn threads() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-pub(super) fn lines(
-    field: &impl VectorField,
-    time: f64,
-    seeds: &[DVec3],
-    direction: Direction,
-    limits: &Limits,
-    threads: usize,
-) -> Vec<Line> {
-    let blocks = seeds.len().div_ceil(BLOCK);
+/// So many lines, each made by whichever thread is free, in the order of their numbers.
+fn in_order(count: usize, threads: usize, make: impl Fn(usize) -> Line + Sync) -> Vec<Line> {
+    let blocks = count.div_ceil(BLOCK);
     let next = AtomicUsize::new(0);
     let work = || {
         let mut made = Vec::new();
@@ -82,9 +88,7 @@ pub(super) fn lines(
             if block >= blocks {
                 return made;
             }
-            let numbers = block * BLOCK..seeds.len().min((block + 1) * BLOCK);
-            let line = |seed: usize| line(field, time, seed, seeds[seed], direction, limits);
-            made.extend(numbers.map(line));
+            made.extend((block * BLOCK..count.min((block + 1) * BLOCK)).map(&make));
         }
     };
     let mut all: Vec<Line> = std::thread::scope(|scope| {
@@ -103,217 +107,41 @@ pub(super) fn lines(
 
 fn line(
     field: &impl VectorField,
-    time: f64,
+    (time, start): (f64, DVec3),
     seed: usize,
-    start: DVec3,
     direction: Direction,
     limits: &Limits,
+    crowd: Option<&Crowd>,
 ) -> Line {
-    let follow = |sign: f64| Walk::new(field, limits, sign).follow(time, start);
-    let (mut vertices, mut ends) = (Vec::new(), [None, None]);
+    let follow = |sign: f64| {
+        let walk = Walk::new(field, limits, sign);
+        let walk = match crowd {
+            Some(crowd) => walk.among(crowd),
+            None => walk,
+        };
+        walk.follow(time, start)
+    };
+    let (mut way, mut ends) = (Vec::new(), [None, None]);
     if direction != Direction::Forward {
         let (back, end) = follow(-1.0);
-        vertices.extend(back.into_iter().rev());
+        way.extend(back.into_iter().rev());
         ends[0] = Some(end);
     }
     // A closed line is whole by one way round.
     if direction != Direction::Backward && ends[0] != Some(End::Closed) {
         let (ahead, end) = follow(1.0);
         // The seed is there already.
-        let known = usize::from(!vertices.is_empty());
-        vertices.extend(ahead.into_iter().skip(known));
+        let known = usize::from(!way.is_empty());
+        way.extend(ahead.into_iter().skip(known));
         ends[1] = Some(end);
     }
+    let (vertices, breaks) = seam::split(way, field.seam());
     Line {
         seed,
         vertices,
+        breaks,
         ends,
     }
-}
-
-/// One way from a seed.
-struct Walk<'a, F> {
-    field: &'a F,
-    limits: &'a Limits,
-    sign: f64,
-    cells_from_world: DMat3,
-}
-
-impl<'a, F: VectorField> Walk<'a, F> {
-    fn new(field: &'a F, limits: &'a Limits, sign: f64) -> Self {
-        Self {
-            field,
-            limits,
-            sign,
-            cells_from_world: field.cells_from_world(),
-        }
-    }
-
-    /// How long a way is in cells, along the axis where it is longest.
-    fn cells(&self, way: DVec3) -> f64 {
-        (self.cells_from_world * way).abs().max_element()
-    }
-
-    fn follow(&self, start: f64, seed: DVec3) -> (Vec<Vertex>, End) {
-        let first = match self.field.velocity(start, seed) {
-            Ok(velocity) => velocity,
-            Err(absence) => return (Vec::new(), End::Absence(absence)),
-        };
-        let mut vertices = Vec::new();
-        let mut way = Way {
-            time: start,
-            place: seed,
-            velocity: first,
-            length: 0.0,
-            cells: 0.0,
-        };
-        vertices.extend(self.vertex(start, seed));
-        let last = self.last_time(start);
-        let stagnant = STAGNANT * self.field.fast_speed();
-        let mut controller = Controller::default();
-        let mut wanted = 0.5 / self.cells(first);
-        let (mut slow_steps, mut still_steps, mut anchor) = (0, 0, seed);
-        loop {
-            let speed = way.velocity.length();
-            slow_steps = if speed <= stagnant { slow_steps + 1 } else { 0 };
-            let is_still = self.cells(way.place - anchor) < UNMOVED * self.limits.tolerance;
-            still_steps = if is_still { still_steps + 1 } else { 0 };
-            if !is_still {
-                anchor = way.place;
-            }
-            if slow_steps.max(still_steps) >= STAGNANT_STEPS || speed == 0.0 {
-                return (vertices, End::Stagnation);
-            }
-            let rest = (last - way.time).abs();
-            if rest == 0.0 {
-                return (vertices, End::Time);
-            }
-            let to_snapshot = self.field.next_snapshot(way.time, self.sign > 0.0);
-            let to_snapshot = to_snapshot.map_or(f64::INFINITY, |t| (t - way.time).abs());
-            let most = rest.min(to_snapshot).min(1.0 / self.cells(way.velocity));
-            let made = match self.make(&way, wanted.min(most)) {
-                Ok(made) => made,
-                Err(absence) => return (vertices, End::Absence(absence)),
-            };
-            let error = self.cells(made.error()) / self.limits.tolerance;
-            wanted = made.duration.abs() * controller.growth(error);
-            if let Some(end) = self.leave(&mut vertices, &mut way, &made, seed, first) {
-                return (vertices, end);
-            }
-        }
-    }
-
-    fn last_time(&self, start: f64) -> f64 {
-        let [first, last] = self.field.time_span();
-        match self.sign > 0.0 {
-            true => (start + self.limits.duration).min(last),
-            false => (start - self.limits.duration).max(first),
-        }
-    }
-
-    /// A step of this duration at most that is within the tolerance.
-    fn make(&self, from: &Way, mut duration: f64) -> Result<Step, Absence> {
-        let velocity = |time: f64, place: DVec3| self.field.velocity(time, place);
-        loop {
-            let is_shortest = duration * self.cells(from.velocity) < SHORTEST;
-            match step(
-                velocity,
-                from.time,
-                from.place,
-                self.sign * duration,
-                from.velocity,
-            ) {
-                Ok(made) => {
-                    let error = self.cells(made.error()) / self.limits.tolerance;
-                    // A way that turns may be longer than its first velocity says.
-                    let cells = self.cells(made.end - made.start);
-                    if is_shortest || (error <= 1.0 && cells <= 1.0) {
-                        return Ok(made);
-                    }
-                    let by_error = if error > 1.0 {
-                        Controller::reduction(error)
-                    } else {
-                        1.0
-                    };
-                    duration *= by_error.min(0.95 / cells.max(0.95));
-                }
-                Err(absence) if is_shortest => return Err(absence),
-                Err(_) => duration *= 0.5,
-            }
-        }
-    }
-
-    /// Leaves the vertices of a step; why the line ends in it, where it does.
-    fn leave(
-        &self,
-        vertices: &mut Vec<Vertex>,
-        way: &mut Way,
-        made: &Step,
-        seed: DVec3,
-        first: DVec3,
-    ) -> Option<End> {
-        let dense = made.dense();
-        let off = self.cells(dense.at(0.5) - 0.5 * (made.start + made.end));
-        let chords = (off / CHORD).sqrt().ceil().clamp(1.0, MOST_CHORDS);
-        for chord in 1..=chords as u32 {
-            let part = f64::from(chord) / chords;
-            let is_last = f64::from(chord) == chords;
-            let mut place = if is_last { made.end } else { dense.at(part) };
-            let mut time = made.time + part * made.duration;
-            let before = way.place;
-            let mut end = None;
-            let ahead = place - before;
-            way.cells += self.cells(ahead);
-            let to_seed = nearest(before, place, seed);
-            if way.cells > CLOSED_AFTER
-                && self.cells(to_seed - seed) < CLOSED
-                && ahead.dot(self.sign * first) > 0.0
-            {
-                (place, end) = (seed, Some(End::Closed));
-            }
-            let length = ahead.length();
-            if end.is_none() && way.length + length >= self.limits.length {
-                let share = (self.limits.length - way.length) / length;
-                place = before + share * ahead;
-                time = way.time + share * (time - way.time);
-                end = Some(End::Length);
-            }
-            way.length += length;
-            (way.time, way.place) = (time, place);
-            vertices.extend(self.vertex(time, place));
-            if end.is_none() && vertices.len() >= self.limits.vertices {
-                end = Some(End::Vertices);
-            }
-            if end.is_some() {
-                return end;
-            }
-        }
-        way.time = made.time + made.duration;
-        way.velocity = made.last_velocity();
-        None
-    }
-
-    fn vertex(&self, time: f64, place: DVec3) -> Option<Vertex> {
-        // Between the stages of a step a way may graze what has none.
-        let speed = self.field.speed(time, place).ok()?;
-        Some(Vertex { place, time, speed })
-    }
-}
-
-/// Where a walk is.
-struct Way {
-    time: f64,
-    place: DVec3,
-    velocity: DVec3,
-    length: f64,
-    cells: f64,
-}
-
-/// The place between `a` and `b` that is nearest to `to`.
-fn nearest(a: DVec3, b: DVec3, to: DVec3) -> DVec3 {
-    let along = b - a;
-    let part = (to - a).dot(along) / along.length_squared();
-    a + part.clamp(0.0, 1.0) * along
 }
 
 #[cfg(test)]

@@ -26,7 +26,23 @@ pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> io::Result<()> {
     let corners = mesh.positions.len() as u64;
     let indices = 3 * mesh.triangles.len() as u64;
     let [positions_bytes, indices_bytes] = [12 * corners, 4 * indices];
-    let binary_bytes = 2 * positions_bytes + indices_bytes;
+    let has_colors = !mesh.colors.is_empty();
+    if has_colors && mesh.colors.len() != mesh.positions.len() {
+        let message = format!("{} colours for {corners} corners", mesh.colors.len());
+        return Err(io::Error::new(ErrorKind::InvalidInput, message));
+    }
+    let colors_at = 2 * positions_bytes + indices_bytes;
+    let binary_bytes = colors_at + if has_colors { positions_bytes } else { 0 };
+    let [attribute, view, accessor] = match has_colors {
+        false => Default::default(),
+        true => [
+            r#","COLOR_0":3"#.to_owned(),
+            format!(r#",{{"buffer":0,"byteOffset":{colors_at},"byteLength":{positions_bytes}}}"#),
+            format!(
+                r#",{{"bufferView":3,"componentType":{FLOAT},"count":{corners},"type":"VEC3"}}"#
+            ),
+        ],
+    };
 
     // Bounds of what is written, not of what it was rounded from.
     let [low, high] = [low, high].map(|corner| (corner - middle).as_vec3());
@@ -37,23 +53,25 @@ pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> io::Result<()> {
             concat!(
                 r#"{{"asset":{{"version":"2.0","generator":"stratavox"}},"scene":0,"scenes":[{{"nodes":[0]}}],"#,
                 r#""nodes":[{{"mesh":0,"translation":[{},{},{}]}}],"#,
-                r#""meshes":[{{"primitives":[{{"attributes":{{"POSITION":0,"NORMAL":1}},"indices":2}}]}}],"#,
+                r#""meshes":[{{"primitives":[{{"attributes":{{"POSITION":0,"NORMAL":1{}}},"indices":2}}]}}],"#,
                 r#""buffers":[{{"byteLength":{}}}],"#,
                 r#""bufferViews":[{{"buffer":0,"byteOffset":0,"byteLength":{}}},"#,
-                r#"{{"buffer":0,"byteOffset":{},"byteLength":{}}},{{"buffer":0,"byteOffset":{},"byteLength":{}}}],"#,
+                r#"{{"buffer":0,"byteOffset":{},"byteLength":{}}},{{"buffer":0,"byteOffset":{},"byteLength":{}}}{}],"#,
                 r#""accessors":[{{"bufferView":0,"componentType":{},"count":{},"type":"VEC3","min":[{},{},{}],"max":[{},{},{}]}},"#,
                 r#"{{"bufferView":1,"componentType":{},"count":{},"type":"VEC3"}},"#,
-                r#"{{"bufferView":2,"componentType":{},"count":{},"type":"SCALAR"}}]}}"#,
+                r#"{{"bufferView":2,"componentType":{},"count":{},"type":"SCALAR"}}{}]}}"#,
             ),
             middle.x,
             middle.y,
             middle.z,
+            attribute,
             binary_bytes,
             positions_bytes,
             positions_bytes,
             positions_bytes,
             2 * positions_bytes,
             indices_bytes,
+            view,
             FLOAT,
             corners,
             low.x,
@@ -66,6 +84,7 @@ pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> io::Result<()> {
             corners,
             UNSIGNED_INT,
             indices,
+            accessor,
         )
     };
     let json_bytes = (json.len() as u64).next_multiple_of(4);
@@ -97,6 +116,9 @@ pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> io::Result<()> {
     }
     for triangle in &mesh.triangles {
         out.write_all(bytemuck::bytes_of(triangle))?;
+    }
+    for color in &mesh.colors {
+        out.write_all(bytemuck::bytes_of(&color.to_array()))?;
     }
     Ok(())
 }

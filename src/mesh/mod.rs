@@ -15,6 +15,8 @@ pub struct Mesh {
     pub positions: Vec<DVec3>,
     /// Three indices into `positions` a triangle.
     pub triangles: Vec<[u32; 3]>,
+    /// A linear colour for each corner, 0 to 1, or none at all. Only glTF keeps them.
+    pub colors: Vec<Vec3>,
 }
 
 /// A kind of file for a [`Mesh`].

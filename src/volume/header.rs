@@ -61,6 +61,10 @@ pub struct Header {
     pub derived: Vec<DerivedVariable>,
     /// The map that the world is drawn on; `None` where the file tells no map.
     pub map: Option<MapProjection>,
+    /// CF standard names of [`Self::variables`], in their order, empty where one has none. Empty in formats without.
+    pub variable_standard_names: Vec<String>,
+    /// True where heights are those of pressures in the standard atmosphere.
+    pub heights_are_pressures: bool,
     /// What a person should know about how the file was understood, one sentence each.
     pub notes: Vec<String>,
 }
@@ -99,6 +103,8 @@ impl Header {
             variables: Vec::new(),
             derived: Vec::new(),
             map: None,
+            variable_standard_names: Vec::new(),
+            heights_are_pressures: false,
             notes: Vec::new(),
         }
     }

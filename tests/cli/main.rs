@@ -29,6 +29,7 @@ mod device;
 mod errors;
 mod examples;
 mod figures;
+mod flow;
 mod info;
 mod info_structure;
 #[cfg(unix)]

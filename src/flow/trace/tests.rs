@@ -1,6 +1,6 @@
 //! Lines in fields whose lines are known, and each reason why one ends.
 
-use super::lines;
+use super::{in_order, line};
 use crate::flow::{
     Absence, Direction, End, GridField, Horizontal, Limits, Line, Metric, Snapshot, VectorField,
     Vertical, path_lines, stream_lines,
@@ -204,16 +204,9 @@ fn any_number_of_threads_makes_the_same_lines() {
                 )
         })
         .collect();
-    let by = |threads| {
-        lines(
-            &field,
-            0.0,
-            &seeds,
-            Direction::Both,
-            &Limits::default(),
-            threads,
-        )
-    };
+    let limits = Limits::default();
+    let make = |i: usize| line(&field, (0.0, seeds[i]), i, Direction::Both, &limits, None);
+    let by = |threads| in_order(seeds.len(), threads, make);
     let one = by(1);
     assert_eq!(one.len(), 200);
     assert!(one.iter().enumerate().all(|(i, line)| line.seed == i));

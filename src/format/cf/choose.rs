@@ -13,6 +13,8 @@ pub(super) struct Choice {
     pub roles: Vec<Role>,
     /// Names of all that can be drawn, this one first, as it was asked for.
     pub names: Vec<String>,
+    /// Their standard names, empty where there are none.
+    pub standard_names: Vec<String>,
     pub notes: Vec<String>,
 }
 
@@ -48,14 +50,23 @@ pub(super) fn choose(arrays: &dyn Arrays, wanted: &VolumeSelection) -> Result<Ch
     let mut notes = Vec::new();
     let roles = roles(arrays, variable, &indices, &mut notes)?;
     drawable.retain(|other| other.name != variable.name);
-    let others = drawable.into_iter().take(MAX_NAMES);
+    let others = || drawable.iter().copied().take(MAX_NAMES);
     let names = std::iter::once(asked)
-        .chain(others.map(|other| other.name.clone()))
+        .chain(others().map(|other| other.name.clone()))
+        .collect();
+    let standard = |other: &Variable| {
+        let name = other.attributes.text("standard_name");
+        name.unwrap_or_default().to_owned()
+    };
+    let standard_names = std::iter::once(variable)
+        .chain(others())
+        .map(standard)
         .collect();
     Ok(Choice {
         variable: variable.clone(),
         roles,
         names,
+        standard_names,
         notes,
     })
 }

@@ -55,6 +55,7 @@ fn open_checked(
     header.is_earth = place.is_earth;
     header.degree_lengths = place.degrees;
     header.derived = available(arrays.as_ref());
+    header.heights_are_pressures = place.are_pressures;
     header.notes = notes;
     header.notes.extend(place.notes);
     let even = place.uneven.iter().all(Option::is_none);
@@ -116,6 +117,7 @@ pub(super) fn grid(
         is_labels: values.is_labels,
         time_names: time_names(arrays.as_ref(), choice),
         variables: choice.names.clone(),
+        variable_standard_names: choice.standard_names.clone(),
         notes: [header.notes, notes].concat(),
         ..header
     };

@@ -17,6 +17,8 @@ use glam::{DAffine3, DVec3};
 /// Levels that are only numbers are spread over this part of the longer horizontal side.
 const HEIGHT_OF_NUMBERS: f64 = 0.25;
 
+const PRESSURES_LIE_AT: &str = "pressures lie at their heights in the standard atmosphere";
+
 /// The points of a grid in the world.
 #[derive(Debug)]
 pub(super) struct Place {
@@ -28,6 +30,8 @@ pub(super) struct Place {
     pub is_earth: bool,
     /// Kilometres of a degree along x and y, where points there are given in degrees.
     pub degrees: [Option<f64>; 2],
+    /// True where heights are those of pressures in the standard atmosphere.
+    pub are_pressures: bool,
     pub notes: Vec<String>,
 }
 
@@ -45,7 +49,12 @@ pub(super) fn place(dims: [u32; 3], coordinates: &[Option<Coordinate>; 3]) -> Op
     }
     let (points, degrees) = on_earth(dims, x, y, z, &mut notes);
     let spanned = from_points(dims, points, true, notes)?;
-    Some(Place { degrees, ..spanned })
+    let are_pressures = spanned.notes.iter().any(|note| note == PRESSURES_LIE_AT);
+    Some(Place {
+        degrees,
+        are_pressures,
+        ..spanned
+    })
 }
 
 /// The place of points that are given for each axis, in world units.
@@ -84,6 +93,7 @@ pub(super) fn from_points(
         uneven,
         is_earth,
         degrees: [None; 2],
+        are_pressures: false,
         notes,
     })
 }
@@ -169,7 +179,7 @@ fn heights(count: u32, z: Option<&Coordinate>, width: f64, notes: &mut Vec<Strin
     });
     if let Some(points) = known.filter(|points| is_monotone(points)) {
         if z.is_some_and(|z| matches!(z.measure, Measure::Pressure(_))) && count > 1 {
-            notes.push("pressures lie at their heights in the standard atmosphere".to_owned());
+            notes.push(PRESSURES_LIE_AT.to_owned());
         }
         return points;
     }

@@ -1,0 +1,270 @@
+//! `stratavox convert INPUT -o LINES.vtp --flow stream`: lines along the wind of a file.
+//!
+//! ```text
+//! wind -> seeds -> lines -> values -> .vtp, .csv or .glb
+//! ```
+
+mod causes;
+mod components;
+mod flags;
+mod ground;
+mod seeds;
+mod tubes;
+mod value;
+mod variable;
+mod wind;
+
+pub use flags::FlowFlags;
+
+use super::{Error, exaggerate, flags::InputFlags, progress::Progress, signals::Gate};
+use crate::flow::write::{Geography, LineValues, write_csv, write_vtp};
+use crate::flow::{
+    Direction, EvenLines, Limits, Line, Seeds, even_stream_lines, path_lines_from, streak_lines,
+    stream_lines,
+};
+use crate::picture::{OutputError, OutputFile, OutputProblem};
+use flags::{FlowColor, FlowWord};
+use glam::DVec3;
+use std::io::{BufWriter, Write};
+use std::path::Path;
+use variable::Variables;
+use wind::Wind;
+
+/// Particles go far apart: they are sown, not spaced.
+const PARTICLES: Seeds = Seeds::Random {
+    count: 200,
+    seed: 0,
+};
+/// A kind of file for lines.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum LineFormat {
+    Vtp,
+    Csv,
+    Glb,
+}
+
+impl LineFormat {
+    fn of_path(path: &Path) -> Result<Self, Error> {
+        let ending = path.extension().and_then(|ending| ending.to_str());
+        match ending.unwrap_or_default().to_ascii_lowercase().as_str() {
+            "vtp" => Ok(Self::Vtp),
+            "csv" => Ok(Self::Csv),
+            "glb" => Ok(Self::Glb),
+            _ => Err(Error::usage(
+                format!("-o {}: no format of lines has that ending", path.display()),
+                "name a file that ends in .vtp, .csv or .glb",
+            )),
+        }
+    }
+}
+
+impl FlowFlags {
+    /// What can be refused before anything is read.
+    pub fn check(&self, path: &Path) -> Result<(), Error> {
+        let format = LineFormat::of_path(path)?;
+        let word = self.flow.map_or("stream", FlowWord::name);
+        let is_even = matches!(self.flow_seeds, Some(Seeds::Even | Seeds::EvenAt(_)));
+        if self.flow != Some(FlowWord::Stream) && is_even {
+            return Err(Error::usage(
+                format!("--flow {word} with --flow-seeds even: particles keep no distance"),
+                "--flow-seeds random:200",
+            ));
+        }
+        let direction = self.flow_direction.map_or(Direction::Forward, Into::into);
+        if self.flow == Some(FlowWord::Streak) && direction != Direction::Forward {
+            return Err(Error::usage(
+                "--flow streak with --flow-direction: smoke goes forward",
+                "leave out --flow-direction",
+            ));
+        }
+        match (&self.flow_color, format) {
+            (Some(FlowColor::One(_)), LineFormat::Vtp | LineFormat::Csv) => Err(Error::usage(
+                "--flow-color R:G:B is for tubes",
+                "--flow-color VAR writes the values of a variable",
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    /// Reads the wind, traces the lines and writes them.
+    pub fn write(
+        &self,
+        word: FlowWord,
+        input: &InputFlags,
+        path: &Path,
+        force: bool,
+        progress: &Progress,
+        gate: &Gate,
+    ) -> Result<(), Error> {
+        let format = LineFormat::of_path(path)?;
+        let limits = input.limits();
+        let variables = Variables { input, limits };
+        let is_of_particles = word != FlowWord::Stream;
+        let wind = wind::read(&variables, self.wind.as_ref(), word, progress)?;
+        let start = self.start(word, input, &wind)?;
+        progress.stage("trace", 0, 1);
+        let lines = self.lines(word, &wind, start, &variables, progress)?;
+        causes::say(&lines, progress);
+        if word == FlowWord::Path {
+            causes::say_displacement(&lines, &wind, progress);
+        }
+        let at = |time: f64| if is_of_particles { time } else { start };
+        let values = match &self.flow_color {
+            Some(FlowColor::Variable(name)) => value::along(&lines, name, &wind, at, &variables)?,
+            _ => LineValues::speeds(&lines),
+        };
+        progress.stage("write", 0, 1);
+        let make = || OutputFile::create(path, force);
+        let mut file = gate.unfinished(make, |file| file.part().to_owned())?;
+        let mut out = BufWriter::new(&mut file);
+        let written = match format {
+            LineFormat::Vtp => write_vtp(&lines, &values, &mut out),
+            LineFormat::Csv => write_csv(&lines, &values, geography(&wind), &mut out),
+            LineFormat::Glb => {
+                let one = match self.flow_color {
+                    Some(FlowColor::One(color)) => Some(color),
+                    _ => None,
+                };
+                tubes::write_tubes(&lines, &values, wind.grid.diagonal(), one, &mut out)
+            }
+        };
+        let outcome = written.and_then(|()| out.flush());
+        drop(out);
+        match outcome {
+            Ok(()) => Ok(gate.finished(|| file.publish())?),
+            Err(cause) => {
+                gate.finished(|| drop(file));
+                Err(Error::WritePicture(OutputError {
+                    path: path.to_owned(),
+                    problem: OutputProblem::Io {
+                        doing: "cannot write the lines",
+                        cause,
+                    },
+                }))
+            }
+        }
+    }
+
+    /// Seconds at which particles are at their seeds, or at which smoke is seen.
+    fn start(&self, word: FlowWord, input: &InputFlags, wind: &Wind) -> Result<f64, Error> {
+        let [first, last] = [wind.times.first(), wind.times.last()];
+        let ends = [first, last].map(|end| end.map_or(0.0, |&(_, seconds)| seconds));
+        if word == FlowWord::Stream {
+            return Ok(ends[0]);
+        }
+        if input.time.is_none() {
+            return Ok(if word == FlowWord::Path {
+                ends[0]
+            } else {
+                ends[1]
+            });
+        }
+        let (time, _) = input.time(&wind.header)?;
+        let chosen = wind.times.iter().find(|(other, _)| *other == time);
+        let chosen = chosen.map_or(ends[0], |&(_, seconds)| seconds);
+        if word == FlowWord::Streak && chosen <= ends[0] {
+            return Err(Error::usage(
+                "--flow streak at the first time: no smoke has left yet",
+                "--time of a later one",
+            ));
+        }
+        Ok(chosen)
+    }
+
+    fn lines(
+        &self,
+        word: FlowWord,
+        wind: &Wind,
+        start: f64,
+        variables: &Variables<'_>,
+        progress: &Progress,
+    ) -> Result<Vec<Line>, Error> {
+        let limits = Limits {
+            length: self.flow_length.unwrap_or(f64::INFINITY),
+            duration: self.flow_time.unwrap_or(f64::INFINITY),
+            ..Limits::default()
+        };
+        let default = if word == FlowWord::Stream {
+            Seeds::Even
+        } else {
+            PARTICLES
+        };
+        let words = self.flow_seeds.clone().unwrap_or(default);
+        let direction = match (self.flow_direction, word) {
+            (Some(direction), _) => direction.into(),
+            (None, FlowWord::Stream) => Direction::Both,
+            (None, _) => Direction::Forward,
+        };
+        if matches!(words, Seeds::Even | Seeds::EvenAt(_)) {
+            return self.even(&words, wind, start, direction, &limits, progress);
+        }
+        let seeds = seeds::places(&words, wind, variables)?;
+        seeds::check(&seeds, wind, start)?;
+        if word != FlowWord::Path && seeds.iter().any(|(_, time)| time.is_some()) {
+            progress.note("times of seeds are for --flow path");
+        }
+        let places: Vec<DVec3> = seeds.iter().map(|&(place, _)| place).collect();
+        Ok(match word {
+            FlowWord::Stream => stream_lines(&wind.field, start, &places, direction, &limits),
+            FlowWord::Path => {
+                let seeds: Vec<_> = seeds
+                    .iter()
+                    .map(|&(place, time)| (time.unwrap_or(start), place))
+                    .collect();
+                path_lines_from(&wind.field, &seeds, direction, &limits)
+            }
+            FlowWord::Streak => {
+                let first = wind.times.first().map_or(0.0, |&(_, seconds)| seconds);
+                let since = first.max(start - limits.duration);
+                streak_lines(&wind.field, [since, start], &places, &limits)
+            }
+        })
+    }
+
+    fn even(
+        &self,
+        words: &Seeds,
+        wind: &Wind,
+        start: f64,
+        direction: Direction,
+        limits: &Limits,
+        progress: &Progress,
+    ) -> Result<Vec<Line>, Error> {
+        let stretch = match wind.header.is_earth {
+            true => exaggerate::suggested(&wind.grid),
+            false => 1.0,
+        };
+        let mut spacing = EvenLines::of(&wind.grid, stretch);
+        if let Seeds::EvenAt(distance) = words {
+            spacing.distance = *distance;
+        }
+        let lines = even_stream_lines(&wind.field, start, &wind.grid, spacing, direction, limits);
+        if lines.is_empty() {
+            return Err(Error::usage(
+                format!(
+                    "--flow-seeds even: no line is as long as the distance {}",
+                    spacing.distance
+                ),
+                "--flow-seeds even:D with a smaller D, or random:200",
+            ));
+        }
+        if lines.len() == spacing.most {
+            progress.note(&format!(
+                "there is room for more than the {} lines; even:D with a D over {} has fewer",
+                spacing.most, spacing.distance
+            ));
+        }
+        Ok(lines)
+    }
+}
+
+fn geography(wind: &Wind) -> Geography {
+    let header = &wind.header;
+    Geography {
+        degrees: match header.degree_lengths {
+            [Some(x), Some(y)] => Some([x, y]),
+            _ => None,
+        },
+        height: header.length_metres.filter(|_| header.is_earth),
+    }
+}

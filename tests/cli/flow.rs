@@ -1,0 +1,255 @@
+//! Lines along the wind of files: what is taken, what is written, what is refused.
+
+use crate::person::{Folder, Ran, assert_begins};
+use crate::real::data;
+use std::fs;
+
+fn fixture(name: &str) -> String {
+    format!("{}/tests/fixtures/{name}", env!("CARGO_MANIFEST_DIR"))
+}
+
+const STORM: &str = "phantom:storm,n=16";
+
+/// Rows of a file of lines: `line,time,x,y,z,lon,lat,height,value`; what is empty is NaN.
+fn rows(folder: &Folder, name: &str) -> Vec<[f64; 9]> {
+    let text = fs::read_to_string(folder.path(name)).expect("the lines");
+    let row = |row: &str| {
+        let numbers = row.split(',').map(|n| n.parse().unwrap_or(f64::NAN));
+        let numbers: Vec<f64> = numbers.collect();
+        numbers.try_into().unwrap_or_else(|_| panic!("{row}"))
+    };
+    text.lines().skip(1).map(row).collect()
+}
+
+/// The last vertex of each line.
+fn ends(rows: &[[f64; 9]]) -> Vec<[f64; 9]> {
+    let mut ends: Vec<[f64; 9]> = Vec::new();
+    for &row in rows {
+        match ends.last_mut() {
+            Some(last) if last[0] == row[0] => *last = row,
+            _ => ends.push(row),
+        }
+    }
+    ends
+}
+
+#[test]
+fn lines_of_a_storm_are_written_in_each_format_and_their_causes_said() {
+    let folder = Folder::new();
+    for name in ["a.vtp", "a.csv", "a.glb"] {
+        let ran = folder.run(&format!(
+            "convert {STORM} -o {name} --flow stream --flow-seeds grid:4,4,2"
+        ));
+        ran.assert_done();
+        for words in ["the wind is u, v, w", "32 lines of", "ends: domain"] {
+            assert!(ran.err.contains(words), "no {words:?}: {ran:#?}");
+        }
+    }
+    assert_begins(
+        &folder.path("a.vtp"),
+        b"<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\"",
+    );
+    assert_begins(&folder.path("a.glb"), b"glTF");
+    let glb = fs::read(folder.path("a.glb")).expect("tubes");
+    assert!(String::from_utf8_lossy(&glb[..400]).contains("\"COLOR_0\":3"));
+    let lines = rows(&folder, "a.csv");
+    assert!(
+        lines
+            .iter()
+            .all(|row| row[2..5].iter().all(|n| n.abs() <= 24.0))
+    );
+    // Our own reader of points takes the vertices of the other file.
+    let info = folder.run("info a.vtp --points --json");
+    info.assert_done();
+    assert!(info.out.contains("vtp"), "{info:#?}");
+    // The same words, the same bytes.
+    let again = format!("convert {STORM} -o b.csv --flow stream --flow-seeds grid:4,4,2");
+    folder.run(&again).assert_done();
+    let read = |name: &str| fs::read(folder.path(name)).expect("lines");
+    assert_eq!(read("a.csv"), read("b.csv"));
+}
+
+#[test]
+fn seeds_colours_lengths_and_times_are_what_the_words_say() {
+    let folder = Folder::new();
+    let run = |words: &str| -> Vec<[f64; 9]> {
+        let ran = folder.run(&format!(
+            "convert {STORM} -o a.csv --force --flow stream {words}"
+        ));
+        ran.assert_done();
+        rows(&folder, "a.csv")
+    };
+    let updraft =
+        run("--flow-seeds where:w>5,10 --flow-direction forward --flow-color w --flow-time 2min");
+    let first = |line: f64| updraft.iter().find(|row| row[0] == line).expect("a line");
+    assert!(
+        (0..10).all(|i| first(f64::from(i))[8] > 5.0),
+        "seeds are not in the updraft"
+    );
+    assert!(updraft.iter().all(|row| (0.0..=120.0).contains(&row[1])));
+    folder.file("seeds.csv", "x,y,z\n1,2,5\n-3,4,6\n");
+    let few = run("--flow-seeds seeds.csv --flow-direction backward --flow-length 2");
+    assert!(few.iter().all(|row| row[1] <= 0.0));
+    for (end, seed) in ends(&few).iter().zip([[1.0, 2.0, 5.0], [-3.0, 4.0, 6.0]]) {
+        assert_eq!(end[2..5], seed);
+    }
+    let ways = few.windows(2).filter(|pair| pair[0][0] == pair[1][0]);
+    let way = |pair: &[[f64; 9]]| {
+        (2..5)
+            .map(|k| (pair[1][k] - pair[0][k]).powi(2))
+            .sum::<f64>()
+            .sqrt()
+    };
+    let length: f64 = ways.map(way).sum();
+    assert!(length <= 4.0 + 1e-9, "{length}");
+    let even = run("--flow-seeds even:6");
+    assert!(ends(&even).len() >= 20, "{} lines", ends(&even).len());
+    // Without w lines keep their height.
+    let level = run("--flow-seeds grid:3,3,3 --wind u,v,none");
+    for pair in level.windows(2).filter(|pair| pair[0][0] == pair[1][0]) {
+        assert_eq!(pair[0][4], pair[1][4]);
+    }
+}
+
+/// The file's wind is u = 4 (x + 1/2) and v = 4 (y + 1/2) a cell of 2 km and 3 km, held over three hours.
+#[test]
+fn particles_and_smoke_go_through_the_times_of_a_file() {
+    let folder = Folder::new();
+    let file = fixture("netcdf/wrf.nc");
+    folder.file("seeds.csv", "-4,-2,0.5\n");
+    for (word, times) in [("path", [0.0, 1800.0]), ("streak", [9000.0, 10800.0])] {
+        let ran = folder.run(&format!(
+            "convert {file} -o {word}.csv --flow {word} --flow-seeds seeds.csv --flow-time 30min --wind U,V,none"
+        ));
+        ran.assert_done();
+        let warns = ran
+            .err
+            .contains("snapshots are far apart: path lines are uncertain");
+        assert_eq!(warns, word == "path", "{ran:#?}");
+        assert!(
+            ran.err.contains("without a unit, and taken as m s-1: U, V"),
+            "{ran:#?}"
+        );
+        let rows = rows(&folder, &format!("{word}.csv"));
+        let found = [rows[0][1], rows[rows.len() - 1][1]];
+        let most = if word == "path" { 1800.0 } else { 10800.0 };
+        assert!(
+            found[0] >= times[0] && found[1] <= most + 1e-9,
+            "{word}: {found:?}"
+        );
+        // Beyond the last column the wind is held.
+        for row in rows.iter().filter(|row| row[2] <= 4.0) {
+            // In m, from the first column: dx/dt = 4 (x / 2000 + 1/2), so x + 1000 grows by exp(t / 500 s).
+            let age = if word == "path" {
+                row[1]
+            } else {
+                10800.0 - row[1]
+            };
+            let x = 1e3 * (row[2] + 4.0) + 1000.0;
+            assert!(
+                (x / (1000.0 * (age / 500.0).exp()) - 1.0).abs() < 2e-3,
+                "{word}: {row:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_is_no_wind_and_no_seed_is_refused_by_name() {
+    let folder = Folder::new();
+    folder.file("seeds.csv", "1,2,3\n\n1,2\n");
+    folder.file("far.csv", "1000,2,3\n");
+    let run = |input: &str, words: &str| -> Ran {
+        folder.run(&format!("convert {input} -o a.vtp {words}"))
+    };
+    let stream = |input: &str, words: &str| run(input, &format!("--flow stream {words}"));
+    stream("phantom:head,n=8", "").assert_refused(
+        2,
+        &["no wind in phantom:head,n=8", "wanted U and V", "found"],
+    );
+    stream(STORM, "--wind u,cloud2")
+        .assert_refused(2, &["--wind: no variable cloud2", "there are cloud"]);
+    stream(STORM, "--wind u").assert_refused(2, &["wanted U,V or U,V,W"]);
+    stream(STORM, "--flow-seeds circle:3").assert_refused(2, &["wanted even, grid"]);
+    stream(STORM, "--flow-seeds seeds.csv")
+        .assert_refused(3, &["line 3: 3 numbers wanted, found 2"]);
+    stream(STORM, "--flow-seeds far.csv").assert_refused(
+        2,
+        &[
+            "none of 1 seeds lies in the wind",
+            "box -24,-24,0 to 24,24,18",
+        ],
+    );
+    stream(STORM, "--flow-seeds where:w>500,3").assert_refused(2, &["in no voxel"]);
+    stream(STORM, "--flow-color 1:0:0").assert_refused(2, &["for tubes"]);
+    stream(STORM, "--iso 3").assert_refused(2, &["cannot be used with"]);
+    run(STORM, "--flow-seeds random:4").assert_refused(2, &["--flow"]);
+    run("phantom:storm,n=16,times=1", "--flow path")
+        .assert_refused(2, &["one time", "--flow stream"]);
+    run(STORM, "--flow path").assert_refused(2, &["no dates"]);
+    run(STORM, "--flow path --flow-seeds even").assert_refused(2, &["particles keep no distance"]);
+    run(STORM, "--flow streak --flow-direction both").assert_refused(2, &["smoke goes forward"]);
+    folder
+        .run(&format!("convert {STORM} -o a.ply --flow stream"))
+        .assert_refused(2, &["no format of lines", ".vtp, .csv or .glb"]);
+    let wrf = fixture("netcdf/wrf.nc");
+    stream(&wrf, "--wind U,V,T").assert_refused(2, &["T has unit K", "m s-1", "Pa s-1"]);
+    assert!(!folder.path("a.vtp").exists());
+}
+
+/// Where 60 places of a real forecast are after an hour, against an integration in its own columns.
+#[test]
+fn lines_of_a_forecast_end_where_its_own_columns_say() {
+    let Some(data) = data() else {
+        println!("skipped: there is no data");
+        return;
+    };
+    let file = data.join("met-wrf/wrf_ci.nc");
+    if !file.exists() {
+        println!("skipped: there is no {}", file.display());
+        return;
+    }
+    let text = fs::read_to_string(fixture("flow/wrf_ends.csv")).expect("the ends");
+    let wanted: Vec<Vec<Option<f64>>> = text
+        .lines()
+        .filter(|line| !line.starts_with('#'))
+        .map(|line| line.split(',').map(|n| n.parse().ok()).collect())
+        .collect();
+    let folder = Folder::new();
+    let seeds: Vec<String> = wanted
+        .iter()
+        .map(|row| {
+            row[..3]
+                .iter()
+                .flatten()
+                .map(f64::to_string)
+                .collect::<Vec<_>>()
+                .join(",")
+        })
+        .collect();
+    folder.file("seeds.csv", seeds.join("\n"));
+    let ran = folder.run(&format!(
+        "convert {} -o a.csv --flow stream --flow-seeds seeds.csv --flow-direction forward --flow-time 1h",
+        file.display()
+    ));
+    ran.assert_done();
+    let ends = ends(&rows(&folder, "a.csv"));
+    assert_eq!(ends.len(), 60);
+    let (mut sideways, mut up) = (Vec::new(), Vec::new());
+    for (end, wanted) in ends.iter().zip(&wanted) {
+        if let [.., Some(x), Some(y), Some(z)] = wanted[..] {
+            sideways.push((end[2] - x).hypot(end[3] - y));
+            up.push(1e3 * (end[4] - z).abs());
+        }
+    }
+    sideways.sort_by(f64::total_cmp);
+    up.sort_by(f64::total_cmp);
+    let [middle, last] = [sideways.len() / 2, sideways.len() - 1];
+    println!(
+        "km {} {}, m {} {}",
+        sideways[middle], sideways[last], up[middle], up[last]
+    );
+    assert!(sideways.len() == 59 && sideways[last] < 0.6 && sideways[middle] < 0.02);
+    // W is brought from its own even heights to those of U.
+    assert!(up[last] < 25.0 && up[middle] < 2.0);
+}
