@@ -97,10 +97,15 @@ fn keyframes_move_camera_and_planes_around_colours_and_labels() {
 fn a_film_of_times_shows_what_lies_beside_as_pictures_of_each_time_do() {
     let folder = Folder::new();
     labels(&folder, "l.nrrd", |i| u8::from(i % 6 >= 3));
-    let storm = "phantom:storm,n=12,variable=vapor,times=2";
+    let storm = "phantom:storm,n=12,times=2 --variable vapor";
+    folder
+        .run("convert phantom:storm,n=12,variable=cloud -o cloud.nrrd")
+        .assert_done();
     for words in [
         "--labels l.nrrd --window 0,9",
-        "--with phantom:storm,n=12,variable=cloud,times=2,color=white --window 0,9",
+        "--with cloud.nrrd,color=white --window 0,9",
+        // Of the same time.
+        "--opacity-variable cloud --window 0,9",
         "--labels l.nrrd --mode mip --window 0,9",
     ] {
         folder
@@ -112,6 +117,8 @@ fn a_film_of_times_shows_what_lies_beside_as_pictures_of_each_time_do() {
             let words = format!("{storm} {words} --time {time}");
             assert_frame_is(&folder, &format!("t{time}.png"), &words);
         }
+        let [first, second] = ["t0.png", "t1.png"].map(|name| fs::read(folder.path(name)));
+        assert_ne!(first.expect("a file"), second.expect("a file"), "{words}");
     }
 }
 
@@ -127,7 +134,7 @@ fn what_several_numbers_cannot_do_in_a_film_is_refused_by_name() {
     );
     folder.file(
         "half.json",
-        r#"{"stratavox_keyframes":1,"frames":3,"keys":[{"at":0,"time":0},{"at":2,"time":1}]}"#,
+        r#"{"stratavox_keyframes":1,"frames":3,"keys":[{"at":0,"time":0},{"at":1,"time":1}]}"#,
     );
     let before = folder.names();
     for (words, said) in [

@@ -12,7 +12,6 @@ fn an_error_about_a_section_names_it_where_no_mode_was_given() {
         .assert_done();
     for (flags, blamed) in [
         ("--cut-faces --clip 1,0,0,0", "an opaque cut face"),
-        ("--labels labels.nrrd", "--labels"),
         ("--opacity-from labels.nrrd", "--opacity-from"),
         ("--shading phong", "--shading phong"),
         ("--ambient-occlusion 1", "--ambient-occlusion"),
