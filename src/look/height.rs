@@ -82,7 +82,7 @@ pub fn mean_at_a_third(
     Ok((count > 0).then(|| sum / count as f64))
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "phantoms"))]
 mod tests {
     use super::*;
     use crate::volume::{Format, Limits, Piece, Rescale, VoxelType, Voxels, phantom};

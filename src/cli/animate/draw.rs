@@ -79,7 +79,7 @@ pub enum Content {
     /// One time, of everything that `render` draws.
     Still(Box<SceneInputs>),
     /// Several times of the same, of which this is the first.
-    Together(Box<SceneInputs>, Together),
+    Together(Box<SceneInputs>, Box<Together>),
     /// Several times of one number a voxel; with the device's memory, drawn brick by brick from their file.
     Times(Arc<dyn Source>, Option<DeviceMemory>),
 }

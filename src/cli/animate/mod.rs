@@ -239,7 +239,7 @@ impl Animate {
                 let shown = shown.at_level(&first);
                 progress.note("colours and windows are those of the first time");
                 let together = Together::new(scene, &shown, settings, device.memory()?);
-                Content::Together(Box::new(shown), together)
+                Content::Together(Box::new(shown), Box::new(together))
             }
             None => {
                 let is_whole = shots.iter().all(|shot| shot.time.fract() == 0.0);
