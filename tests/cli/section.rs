@@ -209,6 +209,45 @@ fn picture(folder: &Folder, words: &str, [width, height]: [usize; 2]) -> Vec<[f3
 }
 
 #[test]
+fn planes_of_a_stack_lie_evenly_from_the_eye_on() {
+    let folder = Folder::new();
+    volume(&folder);
+    for section in ["axial", "coronal", "sagittal"] {
+        for nth in 1..=SIDE {
+            // Seen from below, from anterior and from the left.
+            let depth = match section {
+                "axial" => nth - 1,
+                "coronal" => SIDE - nth,
+                _ => nth - 1,
+            };
+            // A target moves the plane sideways alone.
+            for words in ["", "--target 2.5,2.5,2.5"] {
+                let found = values(
+                    &folder,
+                    &format!("--section {section}:{nth}/{SIDE} {words}"),
+                );
+                for (i, found) in found.into_iter().enumerate() {
+                    let wanted = value(seen(section, [i % SIDE, i / SIDE], depth));
+                    assert!((found - wanted).abs() < 1e-3, "{section} {nth}, pixel {i}");
+                }
+            }
+        }
+    }
+    let (window, size) = ("--window 0,444 --background 0,0,1", [116, 16]);
+    let all = picture(&folder, &format!("--section axial:5 {window}"), size);
+    let words = (1..=5)
+        .map(|nth| format!("axial:{nth}/5"))
+        .collect::<Vec<_>>();
+    let one_by_one = picture(
+        &folder,
+        &format!("--section {} {window}", words.join(",")),
+        size,
+    );
+    assert_eq!(all, one_by_one);
+    assert!(all.iter().any(|pixel| pixel[0] > 0.5) && all[0] != all[100]);
+}
+
+#[test]
 fn several_planes_are_those_of_single_pictures_at_one_scale() {
     let folder = Folder::new();
     volume(&folder);
@@ -267,6 +306,14 @@ fn several_planes_are_those_of_single_pictures_at_one_scale() {
             "--section axial,flat -o b.png",
             "wanted axial, coronal, sagittal",
         ),
+        ("render", "--section axial:0 -o b.png", "wanted axial"),
+        ("render", "--section axial:4/3 -o b.png", "wanted axial"),
+        (
+            "render",
+            "--section axial:40,coronal:40 -o b.png",
+            "at most 64 planes, found 80",
+        ),
+        ("animate", "--section axial:3 -o b.gif", "several planes"),
         (
             "animate",
             "--section axial,coronal -o b.gif",

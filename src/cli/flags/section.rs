@@ -4,6 +4,7 @@
 //! plane       n . (x - target) = 0,   the eye on the side of n, orthographic
 //! slab        |n . (x - target)| <= thickness / 2,   by two clip planes
 //! height      2 max(H_up, H_right height / width),   H_v = |v . (c - target)| + sum of |v . a_k|
+//! i of N      n . (x - c) = H_n(c) (1 - (2 i - 1) / N),   H_n(c) = sum of |n . a_k|,   i = 1 the nearest to the eye
 //! ```
 //!
 //! with c the middle of the grid box and a_k half of its edges: all of the box fits. A slab thinner than a step of
@@ -28,7 +29,8 @@ use std::{fmt, str::FromStr};
 pub struct SectionFlags {
     /// Show a cut through --target, seen from in front: axial (from below), coronal (from anterior), sagittal (from
     /// the left), or by its normal; on the Earth axial is a map (from above) and coronal seen from the south; --mode is
-    /// average unless given. Up to four planes in one picture, at one scale: axial,coronal,sagittal
+    /// average unless given. Several planes in one picture, at one scale: axial,coronal,sagittal; axial:12 is twelve of
+    /// them, evenly from end to end, and axial:3/12 the third
     #[arg(long, value_name = "PLANE", allow_hyphen_values = true, help_heading = "Camera",
           conflicts_with_all = ["projection", "fov", "view", "azimuth", "elevation", "eye"])]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -42,15 +44,33 @@ pub struct SectionFlags {
 /// The planes of `--section`, one or more.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
-pub struct Planes(Vec<Plane>);
+pub struct Planes(Vec<Cuts>);
 
 /// More have no room in a picture.
-const MOST_PLANES: usize = 4;
+const MOST_CUTS: u32 = 64;
 
-/// Every word of `--section`, and the direction that a plane faces.
+/// One word of `--section`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Cuts {
+    plane: Plane,
+    place: Place,
+}
+
+/// Where planes that face the same way lie.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Place {
+    /// One, through the target.
+    Target,
+    /// So many, evenly from end to end.
+    All(u32),
+    /// One of so many, counted from 1.
+    Nth(u32, u32),
+}
+
+/// The direction that a plane faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(missing_docs, reason = "the names say it")]
-pub enum Plane {
+enum Plane {
     Axial,
     Coronal,
     Sagittal,
@@ -64,19 +84,19 @@ const THINNEST: f64 = 0.01;
 impl SectionFlags {
     /// The same flags for each of the planes alone; none without a section.
     pub fn each(&self) -> Vec<Self> {
-        let planes = self.section.iter().flat_map(|planes| &planes.0);
-        let alone = |&plane: &Plane| Self {
-            section: Some(Planes(vec![plane])),
+        let cuts = self.section.iter().flat_map(|planes| &planes.0);
+        let alone = |cut: Cuts| Self {
+            section: Some(Planes(vec![cut])),
             ..self.clone()
         };
-        planes.map(alone).collect()
+        cuts.flat_map(|cuts| cuts.each()).map(alone).collect()
     }
 
     /// The plane, where there is one.
-    fn plane(&self) -> Result<Option<Plane>, Error> {
+    fn cut(&self) -> Result<Option<Cuts>, Error> {
         match self.section.as_ref().map(|planes| &planes.0[..]) {
             None => Ok(None),
-            Some(&[plane]) => Ok(Some(plane)),
+            Some(&[cut]) if !matches!(cut.place, Place::All(_)) => Ok(Some(cut)),
             Some(_) => Err(Error::usage(
                 "--section of several planes makes one picture of them, and only `render` draws that",
                 "name one plane",
@@ -134,7 +154,7 @@ impl SectionFlags {
         extent_pixels: [u32; 2],
         settings: &mut Settings,
     ) -> Result<Camera, Error> {
-        let Some(plane) = self.plane()? else {
+        let Some(Cuts { plane, place }) = self.cut()? else {
             return camera.camera(subject, extent_pixels);
         };
         if camera.places_the_eye() {
@@ -144,8 +164,13 @@ impl SectionFlags {
             ));
         }
         let center = subject.bounds.center;
-        let target = camera.target.map_or(center, |Numbers(p)| p.into());
         let normal = plane.normal(subject.is_earth)?;
+        let mut target = camera.target.map_or(center, |Numbers(p)| p.into());
+        if let Place::Nth(nth, count) = place {
+            let share = 1.0 - f64::from(2 * nth - 1) / f64::from(count);
+            let along = (center - target).dot(normal) + share * subject.half_extent(normal);
+            target += along * normal;
+        }
         let up = camera
             .up
             .map_or_else(|| up_for(normal), |Numbers(v)| v.into());
@@ -221,27 +246,96 @@ impl FromStr for Planes {
 
     fn from_str(text: &str) -> Result<Self, String> {
         // A normal has commas of its own.
-        if let Ok(plane) = text.parse() {
-            return Ok(Self(vec![plane]));
+        let words: Result<Vec<Cuts>, String> = match text.parse() {
+            Ok(cuts) => Ok(vec![cuts]),
+            Err(problem) if text.contains(',') => {
+                let all: Result<_, String> = text.split(',').map(str::parse).collect();
+                all.map_err(|_| problem)
+            }
+            Err(problem) => Err(problem),
+        };
+        let words = words?;
+        let count = words.iter().map(|cuts| cuts.count()).sum::<u32>();
+        if count > MOST_CUTS {
+            return Err(format!("wanted at most {MOST_CUTS} planes, found {count}"));
         }
-        let planes: Result<Vec<Plane>, _> = text.split(',').map(str::parse).collect();
-        let planes = planes.map_err(|_| {
-            "wanted axial, coronal, sagittal, several of them with commas between, or the normal NX,NY,NZ of a plane"
-        })?;
-        match planes.len() {
-            0..=MOST_PLANES => Ok(Self(planes)),
-            found => Err(format!(
-                "wanted at most {MOST_PLANES} planes, found {found}"
-            )),
+        Ok(Self(words))
+    }
+}
+
+impl Cuts {
+    fn count(self) -> u32 {
+        match self.place {
+            Place::Target | Place::Nth(..) => 1,
+            Place::All(count) => count,
+        }
+    }
+
+    /// Each plane by itself.
+    fn each(self) -> Vec<Self> {
+        match self.place {
+            Place::Target | Place::Nth(..) => vec![self],
+            Place::All(count) => {
+                let nth = |nth| Self {
+                    place: Place::Nth(nth, count),
+                    ..self
+                };
+                (1..=count).map(nth).collect()
+            }
+        }
+    }
+}
+
+impl FromStr for Cuts {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        const WANTED: &str = "wanted axial, coronal, sagittal, several of them with commas between, or the normal NX,NY,NZ of a \
+            plane; axial:12 for twelve, axial:3/12 for the third of them";
+        let (plane, place) = match text.split_once(':') {
+            None => (text, Some(Place::Target)),
+            Some((plane, place)) => (plane, place_of(place)),
+        };
+        Ok(Self {
+            plane: plane.parse().map_err(|_| WANTED.to_owned())?,
+            place: place.ok_or_else(|| WANTED.to_owned())?,
+        })
+    }
+}
+
+/// `12` or `3/12`.
+fn place_of(text: &str) -> Option<Place> {
+    let number = |text: &str| text.parse().ok().filter(|n| (1..=MOST_CUTS).contains(n));
+    match text.split_once('/') {
+        // More than there may be is said with their sum.
+        None => text
+            .parse()
+            .ok()
+            .filter(|&n| n > 0 && n < 1 << 16)
+            .map(Place::All),
+        Some((nth, count)) => {
+            let (nth, count) = (number(nth)?, number(count)?);
+            (nth <= count).then_some(Place::Nth(nth, count))
+        }
+    }
+}
+
+impl fmt::Display for Cuts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.plane.fmt(f)?;
+        match self.place {
+            Place::Target => Ok(()),
+            Place::All(count) => write!(f, ":{count}"),
+            Place::Nth(nth, count) => write!(f, ":{nth}/{count}"),
         }
     }
 }
 
 impl fmt::Display for Planes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, plane) in self.0.iter().enumerate() {
+        for (i, cuts) in self.0.iter().enumerate() {
             let comma = if i > 0 { "," } else { "" };
-            write!(f, "{comma}{plane}")?;
+            write!(f, "{comma}{cuts}")?;
         }
         Ok(())
     }
@@ -255,9 +349,7 @@ impl FromStr for Plane {
             "axial" => Ok(Self::Axial),
             "coronal" => Ok(Self::Coronal),
             "sagittal" => Ok(Self::Sagittal),
-            _ => text.parse().map(Self::Normal).map_err(|_| {
-                "wanted axial, coronal, sagittal, or the normal NX,NY,NZ of a plane".to_owned()
-            }),
+            _ => text.parse().map(Self::Normal),
         }
     }
 }
