@@ -492,7 +492,7 @@ fn what_cannot_be_mixed_is_refused() {
     let mode = Mode::Mip;
     let found = refused(mode, Beside::Colors(&[&volume, &volume]));
     assert_eq!(found, Error::NotMixed { mode });
-    let labels = channels(&volume, Role::Labels, 1);
-    let found = refused(mode, Beside::Channels(&labels));
+    let opacity = channels(&volume, Role::Opacity, 1);
+    let found = refused(mode, Beside::Channels(&opacity));
     assert_eq!(found, Error::NotMixed { mode });
 }

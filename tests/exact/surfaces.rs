@@ -553,7 +553,7 @@ fn what_cannot_colour_a_surface_is_refused_by_name() {
         (&shot, vec![numbers; 2], "iso shows one volume"),
         (
             &shot,
-            vec![of(Role::Labels, Some(&function))],
+            vec![of(Role::Opacity, Some(&function))],
             "iso shows one volume",
         ),
         (
