@@ -204,6 +204,7 @@ mod figure;
 pub mod flow;
 #[cfg(feature = "files")]
 pub mod format;
+pub mod geometry;
 pub mod gpu;
 #[doc(hidden)]
 pub mod isosurface;

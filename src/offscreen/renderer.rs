@@ -7,6 +7,7 @@
 //! picture = mean over the positions
 //! ```
 
+mod behind;
 mod classified;
 mod copied;
 mod filtered;
@@ -42,6 +43,8 @@ use crate::technique::{
 };
 use crate::transfer::{GradientTransfer, TransferFunction};
 use crate::volume::Volume;
+use behind::Behind;
+pub use behind::check_geometry;
 use copied::Copied;
 pub use filtered::Filtered;
 use gather::points_at_once;
@@ -89,6 +92,8 @@ pub struct Renderer<'v> {
     changes: u64,
     /// Passes over all samples of the picture that is being drawn: how many are done, and how many there are.
     passes_done: [usize; 2],
+    /// Geometry in the pictures.
+    behind: Option<Behind>,
     device: Headless,
 }
 
@@ -239,6 +244,21 @@ impl<'v> Renderer<'v> {
         let under = scene.under_labels();
         let first = under.volumes().len();
         let mut rendered = self.render_unlabeled(&under, layers)?;
+        // Labels lie over the geometry too.
+        let behind = self.behind.take();
+        let laid = self.lay_labels(scene, first, &mut rendered);
+        self.behind = behind;
+        laid?;
+        Ok(rendered)
+    }
+
+    fn lay_labels(
+        &mut self,
+        scene: &Scene,
+        first: usize,
+        rendered: &mut Rendered,
+    ) -> Result<(), Error> {
+        let labels = scene.labels_over();
         let mut clock = Clock(rendered.gpu_ms);
         for (shown, map) in (first..).zip(labels) {
             let Some(over) = LabelsOver::new(scene, map) else {
@@ -253,7 +273,7 @@ impl<'v> Renderer<'v> {
             laid?;
         }
         rendered.gpu_ms = clock.0;
-        Ok(rendered)
+        Ok(())
     }
 
     /// The same without labels over it.
@@ -279,10 +299,12 @@ impl<'v> Renderer<'v> {
                 picture
             }));
             self.shown = 0;
-            let (picture, gpu_ms) = (picture?, clock.0);
+            let (mut picture, gpu_ms) = (picture?, clock.0);
+            self.put_geometry_over(scene, &mut picture)?;
             return Ok(Rendered { picture, gpu_ms });
         }
-        let picture = self.picture(scene, layers, &mut clock)?;
+        let mut picture = self.picture(scene, layers, &mut clock)?;
+        self.put_geometry_over(scene, &mut picture)?;
         Ok(Rendered {
             picture,
             gpu_ms: clock.0,
@@ -318,12 +340,17 @@ impl<'v> Renderer<'v> {
         let per_side = scene.settings.rays_per_side;
         let mut mean = Mean::new(per_side);
         for in_pixel in positions_in_pixel(scene.settings) {
-            let (colors, gpu_ms) = self.colors(scene, in_pixel)?;
+            self.look_behind(scene, in_pixel)?;
+            let (mut colors, gpu_ms) = self.colors(scene, in_pixel)?;
             clock.add(gpu_ms);
+            if let (Some(behind), false) = (&self.behind, scene.settings.mode.is_projection()) {
+                behind.put(&mut colors, scene.settings);
+            }
             mean.add(colors);
         }
         let pixels = mean.pixels;
         if per_side > 1 && !layers.is_empty() {
+            self.look_behind(scene, InPixel::CENTER)?;
             clock.add(self.gather(scene, InPixel::CENTER)?);
         }
         let layers = self.read_layers(scene, layers)?;

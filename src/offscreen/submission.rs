@@ -2,7 +2,7 @@
 
 use super::passes::Finish;
 use super::time_slices::{Spent, TimeSlices, Work};
-use crate::gpu::{Blocks, Error, Gpu, Headless, Tile, Timer};
+use crate::gpu::{Blocks, Error, Gpu, Headless, Resource, Tile, Timer};
 use crate::technique::Inputs;
 use crate::technique::gather::{BrickPass, Canvas, Gather, PICTURE, Part, Player};
 use ash::vk;
@@ -84,15 +84,16 @@ impl Submission<'_, '_> {
     }
 
     /// Runs the passes of a technique over bricks, what is read of each beside what is recorded, into a canvas.
-    /// `resumes`: onto what bricks before these have left there.
+    /// `depth`: where rays end. `resumes`: onto what bricks before these have left there.
     pub fn gather(
         self,
         gather: &dyn Gather,
         canvas: &mut Canvas,
         (inputs, bricks): (&[Inputs], &[BrickPass]),
+        depth: Option<Resource>,
         resumes: bool,
     ) -> Result<Spent, Error> {
-        let bound = gather.bind(canvas, inputs, None)?;
+        let bound = gather.bind(canvas, inputs, depth)?;
         match resumes {
             true => canvas.resume(),
             false => canvas.begin(),

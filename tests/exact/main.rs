@@ -19,6 +19,7 @@ mod extremes;
 mod fast_path;
 mod filters;
 mod formats;
+mod geometry;
 mod gradient;
 mod half_angle;
 mod light;

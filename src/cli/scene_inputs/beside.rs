@@ -22,6 +22,7 @@ impl SceneInputs {
             is_hiding = reader.mode == Mode::Composite;
         }
         if scene.labels.labels.is_some() {
+            self.others_for("--labels")?;
             let map = labels::read(scene, &grid, height_factor, reader.mode, reader.progress)?;
             if reader.mode == Mode::Composite {
                 let mut opacities = map.function.opacity.iter();

@@ -2,7 +2,7 @@
 
 use super::pacing::Expected;
 use super::{Renderer, parts_of};
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, Resource};
 use crate::offscreen::Error;
 use crate::offscreen::submission::Submission;
 use crate::offscreen::time_slices::Spent;
@@ -78,8 +78,15 @@ impl Renderer<'_> {
             recordings.truncate(1);
         }
         let skip = self.skipped.skip();
+        let behind = self
+            .behind
+            .as_ref()
+            .and_then(|behind| behind.depth(scene.camera));
         for recording in &mut recordings {
             recording.skip(skip);
+            if let Some((depth, _)) = &behind {
+                recording.behind(depth, grid.center());
+            }
         }
         let points = match scene.beside {
             Beside::Points(points) => {
@@ -142,6 +149,7 @@ impl Renderer<'_> {
                 targets.count.as_mut().expect("made above"),
             ),
         };
+        let behind = behind.map(|(_, image)| Resource::sampled(image));
         let submission = Submission {
             device: &mut self.device,
             timer: self.timer.as_ref(),
@@ -150,7 +158,7 @@ impl Renderer<'_> {
             is_drawing: true,
             finish: finish.as_ref(),
         };
-        let spent = submission.gather(gather, canvas, (&inputs, &bricks), false)?;
+        let spent = submission.gather(gather, canvas, (&inputs, &bricks), behind, false)?;
         Ok((spent, expected))
     }
 }

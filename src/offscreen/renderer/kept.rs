@@ -76,6 +76,7 @@ impl<'v> Renderer<'v> {
             known: None,
             changes: 0,
             passes_done: [0, 1],
+            behind: None,
             device,
         })
     }

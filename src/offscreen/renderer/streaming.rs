@@ -261,7 +261,7 @@ impl<'v> Renderer<'v> {
         };
         let gather = self.passes.as_ref().expect("prepared").picture();
         let canvas = &mut self.targets.as_mut().expect("prepared").canvas;
-        Ok(submission.gather(gather, canvas, (&inputs, &bricks), !is_first)?)
+        Ok(submission.gather(gather, canvas, (&inputs, &bricks), None, !is_first)?)
     }
 
     /// Marks the bricks that can add nothing any more: all of their rays have ended, or have met larger values.

@@ -1,0 +1,102 @@
+//! Opaque geometry beside a volume: lines as tubes, arrows, points as spheres, all of them round cones.
+//!
+//! ```text
+//! round cone   the hull of two spheres:  p(s) = a + s (b - a),  r(s) = r_a + s (r_b - r_a),  0 <= s <= 1
+//! ```
+//!
+//! Each pixel's ray is intersected with them in f64, its origin moved next to the cone first; no polygons. What is found
+//! is a colour and how far away it is, behind which rays through the volume end.
+//!
+//! ```
+//! use glam::DVec3;
+//! use stratavox::camera::{Camera, Projection};
+//! use stratavox::geometry::{RoundCones, Vertex};
+//!
+//! let mut cones = RoundCones::default();
+//! let vertex = |x: f64| Vertex { place: DVec3::new(x, 0.0, 0.0), radius: 0.5, color: [1.0, 0.5, 0.0] };
+//! cones.add_line([vertex(-1.0), vertex(1.0)]);
+//! let camera = Camera {
+//!     eye: DVec3::new(0.0, 0.0, 8.0),
+//!     target: DVec3::ZERO,
+//!     up: DVec3::Y,
+//!     projection: Projection::Orthographic { view_height: 2.0 },
+//!     zoom: 1.0,
+//! };
+//! let seen = cones.seen(&camera, [9, 9], [0.0; 2]);
+//! assert_eq!(seen.distances[4 * 9 + 4], 7.5);
+//! ```
+
+mod bounds;
+mod round_cone;
+mod seen;
+
+pub use round_cone::{Hit, RoundCone};
+pub use seen::Seen;
+
+use glam::DVec3;
+
+/// The end of a round cone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vertex {
+    /// World.
+    pub place: DVec3,
+    /// World length, over 0.
+    pub radius: f64,
+    /// Linear Rec. 709.
+    pub color: [f32; 3],
+}
+
+/// Round cones, each between two vertices; a sphere is one whose ends are the same vertex.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RoundCones {
+    vertices: Vec<Vertex>,
+    segments: Vec<[u32; 2]>,
+}
+
+impl RoundCones {
+    /// Adds a line: a cone between each two of the vertices; a sphere where there is one vertex.
+    ///
+    /// # Panics
+    /// Where there would be more than 2^32 vertices.
+    pub fn add_line(&mut self, vertices: impl IntoIterator<Item = Vertex>) {
+        let number = |n: usize| u32::try_from(n).expect("at most 2^32 vertices");
+        let first = self.vertices.len();
+        self.vertices.extend(vertices);
+        let last = self.vertices.len();
+        match last - first {
+            0 => {}
+            1 => self.segments.push([number(first); 2]),
+            _ => self
+                .segments
+                .extend((first..last - 1).map(|i| [number(i), number(i + 1)])),
+        }
+    }
+
+    /// Adds all of the other.
+    pub fn add(&mut self, other: &Self) {
+        let first = self.vertices.len() as u32;
+        self.vertices.extend_from_slice(&other.vertices);
+        let moved = other.segments.iter().map(|ends| ends.map(|i| i + first));
+        self.segments.extend(moved);
+    }
+
+    /// How many cones there are.
+    pub fn len(&self) -> usize {
+        self.segments.len()
+    }
+
+    /// True where there is none.
+    pub fn is_empty(&self) -> bool {
+        self.segments.is_empty()
+    }
+
+    /// The cone of a segment, and the colours of its ends.
+    fn cone(&self, segment: usize) -> (RoundCone, [[f32; 3]; 2]) {
+        let ends = self.segments[segment].map(|i| self.vertices[i as usize]);
+        let cone = RoundCone {
+            ends: ends.map(|end| end.place),
+            radii: ends.map(|end| end.radius),
+        };
+        (cone, ends.map(|end| end.color))
+    }
+}

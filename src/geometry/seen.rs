@@ -1,0 +1,221 @@
+//! What a camera sees of round cones: a colour and a distance a pixel.
+//!
+//! ```text
+//! colour = (A + D |n . v|) c + S |n . v|^e        a light at the eye, v the way to it
+//! ```
+//!
+//! The picture is cut into rows of tiles that are shared out among the machine's cores; of each cone the pixels of its
+//! bounds are tried. The nearest hit stays, so the order of cones does not matter but where two are equally near: there the
+//! first stays.
+
+use super::{RoundCones, bounds::Bounds};
+use crate::camera::Camera;
+use std::ops::Range;
+
+/// What the light at the eye leaves of a surface that is seen from the side.
+const AMBIENT: f64 = 0.3;
+/// What it adds where it is seen from the front.
+const DIFFUSE: f64 = 0.7;
+/// How bright its reflection is, and how sharp.
+const SPECULAR: f64 = 0.2;
+const EXPONENT: i32 = 30;
+/// Rows of pixels that a worker takes at a time.
+const BAND: u32 = 16;
+
+/// The first surface along the ray of each pixel, rows from the top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Seen {
+    /// Linear colour, alpha 1 where something is met and all zero elsewhere.
+    pub pixels: Vec<[f32; 4]>,
+    /// World length along the ray from its origin; infinite where nothing is met.
+    pub distances: Vec<f64>,
+}
+
+/// A cone with the pixels that may see it.
+struct Candidate {
+    segment: usize,
+    columns: Range<u32>,
+    rows: Range<u32>,
+}
+
+impl RoundCones {
+    /// What `camera` sees in a picture of so many pixels, by rays through a place in each pixel, counted from its centre.
+    pub fn seen(&self, camera: &Camera, extent: [u32; 2], at: [f64; 2]) -> Seen {
+        let bounds = Bounds::new(camera, extent, at);
+        let [width, height] = extent;
+        let bands = height.div_ceil(BAND) as usize;
+        let mut of_band: Vec<Vec<Candidate>> = (0..bands).map(|_| Vec::new()).collect();
+        for segment in 0..self.len() {
+            let (cone, _) = self.cone(segment);
+            let spheres = [0, 1].map(|k| (cone.ends[k], cone.radii[k]));
+            let Some([columns, rows]) = bounds.of(spheres) else {
+                continue;
+            };
+            for band in rows.start / BAND..rows.end.div_ceil(BAND) {
+                let [first, end] = [band * BAND, (band + 1) * BAND];
+                of_band[band as usize].push(Candidate {
+                    segment,
+                    columns: columns.clone(),
+                    rows: rows.start.max(first)..rows.end.min(end),
+                });
+            }
+        }
+        let count = width as usize * height as usize;
+        let mut seen = Seen {
+            pixels: vec![[0.0; 4]; count],
+            distances: vec![f64::INFINITY; count],
+        };
+        let rays = camera.rays(extent);
+        let size = (width * BAND) as usize;
+        let work = seen
+            .pixels
+            .chunks_mut(size.max(1))
+            .zip(seen.distances.chunks_mut(size.max(1)));
+        let work = std::sync::Mutex::new(work.zip(&of_band).enumerate());
+        let draw = || {
+            loop {
+                let next = work.lock().expect("no worker panics").next();
+                let Some((band, ((pixels, distances), cones))) = next else {
+                    return;
+                };
+                let top = band as u32 * BAND;
+                for candidate in cones {
+                    let (cone, colors) = self.cone(candidate.segment);
+                    for y in candidate.rows.clone() {
+                        for x in candidate.columns.clone() {
+                            let place = [x, y].map(|n| f64::from(n) + 0.5);
+                            let (origin, direction) = rays.at(place[0] + at[0], place[1] + at[1]);
+                            let Some(hit) = cone.hit(origin, direction) else {
+                                continue;
+                            };
+                            let i = ((y - top) * width + x) as usize;
+                            if hit.distance < distances[i] {
+                                distances[i] = hit.distance;
+                                let own = mixed(colors, hit.part);
+                                pixels[i] = lit(own, hit.normal.dot(direction));
+                            }
+                        }
+                    }
+                }
+            }
+        };
+        let threads = std::thread::available_parallelism().map_or(1, |n| n.get());
+        std::thread::scope(|scope| {
+            for _ in 1..threads.min(bands) {
+                scope.spawn(draw);
+            }
+            draw();
+        });
+        seen
+    }
+}
+
+fn mixed([a, b]: [[f32; 3]; 2], part: f64) -> [f32; 3] {
+    std::array::from_fn(|c| a[c] + part as f32 * (b[c] - a[c]))
+}
+
+fn lit(color: [f32; 3], facing: f64) -> [f32; 4] {
+    let facing = facing.abs().min(1.0);
+    let [own, shine] = [AMBIENT + DIFFUSE * facing, SPECULAR * facing.powi(EXPONENT)];
+    let [r, g, b] = color.map(|c| (f64::from(c) * own + shine).min(1.0) as f32);
+    [r, g, b, 1.0]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::Projection;
+    use crate::geometry::Vertex;
+    use glam::{DVec3, dvec3};
+
+    fn camera(projection: Projection) -> Camera {
+        Camera {
+            eye: dvec3(1.0, -7.0, 2.0),
+            target: dvec3(0.2, 0.1, 0.0),
+            up: DVec3::Z,
+            projection,
+            zoom: 1.0,
+        }
+    }
+
+    fn projections() -> [Projection; 2] {
+        [
+            Projection::Orthographic { view_height: 4.0 },
+            Projection::Perspective { fov_degrees: 40.0 },
+        ]
+    }
+
+    /// A helix, a sphere in it, and a line that passes beside the eye.
+    fn cones() -> RoundCones {
+        let mut cones = RoundCones::default();
+        let vertex = |place, radius| Vertex {
+            place,
+            radius,
+            color: [0.8, 0.4, 0.1],
+        };
+        cones.add_line((0..40).map(|i| {
+            let a = f64::from(i) * 0.3;
+            vertex(
+                dvec3(a.cos(), a.sin(), a / 6.0 - 1.0),
+                0.03 + 0.002 * f64::from(i),
+            )
+        }));
+        cones.add_line([vertex(DVec3::ZERO, 0.4)]);
+        cones.add_line([
+            vertex(dvec3(1.4, -9.0, 2.2), 0.1),
+            vertex(dvec3(0.4, -3.0, 0.2), 0.2),
+        ]);
+        cones
+    }
+
+    #[test]
+    fn bounds_leave_out_no_pixel_that_sees_something() {
+        let cones = cones();
+        for projection in projections() {
+            let camera = camera(projection);
+            let (extent, at) = ([61, 47], [0.25, -0.4]);
+            let seen = cones.seen(&camera, extent, at);
+            let rays = camera.rays(extent);
+            let mut hits = 0;
+            for (i, found) in seen.distances.iter().enumerate() {
+                let [x, y] = [i % 61, i / 61].map(|n| n as f64 + 0.5);
+                let (origin, direction) = rays.at(x + at[0], y + at[1]);
+                let all = (0..cones.len()).filter_map(|k| cones.cone(k).0.hit(origin, direction));
+                let wanted = all.map(|hit| hit.distance).fold(f64::INFINITY, f64::min);
+                assert_eq!(*found, wanted, "{projection:?}, pixel {i}");
+                hits += usize::from(wanted.is_finite());
+            }
+            assert!(hits > 200, "{hits}");
+        }
+    }
+
+    #[test]
+    fn a_sphere_is_a_disc_as_large_as_it_is_and_as_bright_as_its_law() {
+        let mut cones = RoundCones::default();
+        cones.add_line([Vertex {
+            place: DVec3::ZERO,
+            radius: 1.0,
+            color: [0.5; 3],
+        }]);
+        let camera = Camera {
+            eye: dvec3(0.0, 0.0, 9.0),
+            target: DVec3::ZERO,
+            up: DVec3::Y,
+            projection: Projection::Orthographic { view_height: 4.0 },
+            zoom: 1.0,
+        };
+        let seen = cones.seen(&camera, [40, 40], [0.0; 2]);
+        for (i, (pixel, distance)) in seen.pixels.iter().zip(&seen.distances).enumerate() {
+            let [x, y] = [i % 40, i / 40].map(|n| (n as f64 + 0.5) / 10.0 - 2.0);
+            let height = 1.0 - x * x - y * y;
+            if height < 0.0 {
+                assert_eq!((*pixel, *distance), ([0.0; 4], f64::INFINITY));
+                continue;
+            }
+            let facing = height.sqrt();
+            assert!((distance - (9.0 - facing)).abs() < 1e-12);
+            let wanted = 0.5 * (AMBIENT + DIFFUSE * facing) + SPECULAR * facing.powi(EXPONENT);
+            assert!((f64::from(pixel[0]) - wanted).abs() < 1e-6);
+        }
+    }
+}
