@@ -173,6 +173,7 @@ impl Bench {
             classification: &shown.classification,
             stream: shown.stream(),
             beside: parts.beside(),
+            lines: shown.lines(),
             settings: &settings,
             extent_pixels: scene.picture.extent_pixels()?,
             layers: &[],

@@ -40,7 +40,8 @@ use std::{
     stratavox convert phantom:head -o head.svb --resume\n  \
     stratavox convert phantom:head,n=64 -o skull.ply --iso 300\n  \
     stratavox convert phantom:storm,n=32 -o updraft.vtp --flow stream --flow-seeds 'where:w>5,100'\n  \
-    stratavox convert phantom:storm,n=32 -o tubes.glb --flow stream"
+    stratavox convert phantom:storm,n=32 -o tubes.glb --flow stream",
+    mut_arg("flow", |flow| flow.conflicts_with_all(["crop", "type", "window", "uncompressed", "iso", "resume"]))
 )]
 pub struct Convert {
     #[command(flatten)]

@@ -4,6 +4,7 @@ use super::{
     Error,
     devices::driver_text,
     flags::Classification,
+    flow::DrawnLines,
     memory::{DeviceMemory, DeviceRoom},
     progress::Progress,
     signals::Gate,
@@ -19,7 +20,7 @@ use crate::{
     volume::{Denoise, Volume, labels::labels_of},
 };
 use std::panic::resume_unwind;
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Instant;
 
@@ -34,6 +35,8 @@ pub struct Job<'a> {
     pub stream: Option<&'a Stream>,
     /// What it is seen together with.
     pub beside: Beside<'a>,
+    /// Lines that are drawn with it.
+    pub lines: Option<&'a DrawnLines>,
     /// What is computed.
     pub settings: &'a Settings,
     /// Pixels across and down.
@@ -86,7 +89,7 @@ pub struct Frame {
 }
 
 /// The word of `--device` for the CPU references.
-const REFERENCE: &str = "reference";
+pub const REFERENCE: &str = "reference";
 
 impl Device {
     /// The one that the word of `--device` names.
@@ -306,14 +309,23 @@ impl<'a> Renderer<'a> {
             extent_pixels,
             ..self.job.scene(camera)
         };
+        self.put_lines(camera, extent_pixels);
         match &mut self.on_device {
             Some(renderer) => Ok(renderer.render(&scene, &[])?.picture),
             None => Ok(reference::render::<f32>(&scene).map_err(offscreen::Error::Technique)?),
         }
     }
 
+    /// Lines are as wide as pixels of the camera say.
+    fn put_lines(&mut self, camera: &Camera, extent_pixels: [u32; 2]) {
+        if let (Some(lines), Some(renderer)) = (self.job.lines, &mut self.on_device) {
+            renderer.set_geometry(Some(Arc::new(lines.cones(camera, extent_pixels))));
+        }
+    }
+
     fn draw_with(&mut self, camera: &Camera, layers: &[LayerKind]) -> Result<Frame, Error> {
         let scene = self.job.scene(camera);
+        self.put_lines(camera, self.job.extent_pixels);
         if let Some(renderer) = &mut self.on_device {
             let rendered = renderer.render(&scene, layers)?;
             return Ok(Frame {

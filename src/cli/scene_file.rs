@@ -67,6 +67,7 @@ pub fn overlay(mut scene: SceneFlags, flags: &SceneFlags) -> SceneFlags {
         scene.input = Default::default();
         scene.opacity = Default::default();
         scene.with = Default::default();
+        (scene.flow, scene.flow_style) = Default::default();
     }
     if flags.opacity.are_given() {
         scene.opacity = Default::default();

@@ -18,6 +18,7 @@ use crate::{
     cli::{
         Error,
         flags::{Classification, SceneFlags},
+        flow::DrawnLines,
         line::{Line, encoders},
         memory::{DeviceMemory, DeviceRoom, Held, leaves_room},
         output,
@@ -82,6 +83,16 @@ pub enum Content {
     Together(Box<SceneInputs>, Box<Together>),
     /// Several times of one number a voxel; with the device's memory, drawn brick by brick from their file.
     Times(Arc<dyn Source>, Option<DeviceMemory>),
+}
+
+impl Content {
+    /// Lines that all frames show.
+    pub fn lines(&self) -> Option<&DrawnLines> {
+        match self {
+            Self::Still(shown) | Self::Together(shown, _) => shown.lines(),
+            Self::Times(..) => None,
+        }
+    }
 }
 
 /// Where pictures go.
@@ -199,6 +210,7 @@ impl Drawing<'_> {
             volume: &moment.volume,
             stream: moment.stream(),
             beside: parts.beside(),
+            lines: None,
             classification: &ready[0].classification,
             settings: &ready[0].settings,
             extent_pixels: self.scene.picture.extent_pixels()?,

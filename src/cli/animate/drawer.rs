@@ -93,6 +93,7 @@ impl Work<'_> {
             volume: &moment.volume,
             stream: moment.stream(),
             beside: parts.beside(),
+            lines: moment.lines().or(self.drawing.content.lines()),
             classification: &ready.classification,
             settings: &ready.settings,
             extent_pixels: self.extent_pixels,

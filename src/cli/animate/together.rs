@@ -47,7 +47,7 @@ impl Together {
         scene.input.time = Some(time.to_string());
         let limits = limits(&scene);
         let source = open_first(&mut scene, &limits, &quiet)?;
-        let shown = SceneInputs::of(source, &scene, &self.settings, self, &quiet)?;
+        let shown = SceneInputs::of_source(source, &scene, &self.settings, self, &quiet)?;
         Ok(shown.at_level(&scene))
     }
 }

@@ -64,6 +64,10 @@ impl<'a> Union<'a> {
                 classification: &frames[0].classification,
                 stream: None,
                 beside: parts.beside(),
+                lines: match self.content {
+                    Content::Still(shown) | Content::Together(shown, _) => shown.lines(),
+                    Content::Times(..) => None,
+                },
                 settings: &frames[0].settings,
                 extent_pixels,
                 layers: &[],

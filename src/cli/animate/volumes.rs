@@ -7,6 +7,7 @@ use crate::{
     cli::{
         Error,
         flags::SceneFlags,
+        flow::DrawnLines,
         load,
         memory::DeviceMemory,
         progress::Progress,
@@ -52,6 +53,11 @@ impl Moment {
     /// What is seen together with it, if not `parts` at all times.
     pub fn parts(&self) -> Option<Parts<'_>> {
         self.together.as_ref().map(|shown| shown.parts())
+    }
+
+    /// Lines of this time.
+    pub fn lines(&self) -> Option<&DrawnLines> {
+        self.together.as_ref().and_then(|shown| shown.lines())
     }
 
     /// A volume that shows which values there are.

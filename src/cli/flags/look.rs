@@ -49,5 +49,9 @@ impl SceneFlags {
             true => Look::Plain,
             false => Look::Auto,
         });
+        // Opaque edges at one ray a pixel look broken.
+        if self.flow.flow.is_some() && self.is_auto() {
+            self.sampling.aa.get_or_insert(4);
+        }
     }
 }

@@ -67,6 +67,7 @@ pub use window::WindowWord;
 pub use with::{WithFlags, WithWord};
 
 use super::Error;
+use super::flow::{FlowFlags, FlowStyleFlags};
 use crate::technique::Settings;
 use clap::Args;
 use serde::{Deserialize, Serialize};
@@ -100,6 +101,10 @@ pub struct SceneFlags {
     pub with: WithFlags,
     #[command(flatten)]
     pub labels: LabelFlags,
+    #[command(flatten)]
+    pub flow: FlowFlags,
+    #[command(flatten)]
+    pub flow_style: FlowStyleFlags,
     #[command(flatten)]
     pub light: LightFlags,
     #[command(flatten)]

@@ -1,11 +1,14 @@
 //! The words of lines along a wind.
 
+use super::super::Error;
 use crate::flow::{Direction, Seeds};
 use clap::{Args, ValueEnum};
-use std::str::FromStr;
+use serde::{Deserialize, Serialize};
+use std::{fmt::Display, str::FromStr};
 
 /// Which lines.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum FlowWord {
     /// Along the wind of one time
     Stream,
@@ -27,7 +30,8 @@ impl FlowWord {
 }
 
 /// Which way lines go from their seeds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum DirectionWord {
     /// Both ways
     Both,
@@ -107,15 +111,12 @@ impl FromStr for WindWords {
 }
 
 /// The words, none of them filled in.
-#[derive(Args, Clone, Debug, Default)]
+#[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct FlowFlags {
-    /// Lines along the wind of INPUT, for a .vtp, .csv or .glb
-    #[arg(
-        long,
-        value_enum,
-        conflicts_with_all = ["crop", "type", "window", "uncompressed", "iso", "resume"],
-        help_heading = "Lines"
-    )]
+    /// Lines along the wind of INPUT: of the wind of one time, of particles, or of smoke
+    #[arg(long, value_enum, help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub flow: Option<FlowWord>,
     /// Where lines begin: even[:D] lines that keep a distance, grid:NX,NY,NZ, random:N[,SEED], plane:x|y|z=V,N (N times N),
     /// rake:X,Y,Z,X,Y,Z,N, where:VAR>V,N, or a file .csv of x,y,z[,t] or lon,lat,height|pressure[,t] [default: even; of
@@ -125,17 +126,20 @@ pub struct FlowFlags {
         value_name = "SEEDS",
         requires = "flow",
         allow_hyphen_values = true,
-        help_heading = "Lines"
+        value_parser = word_of::<Seeds>,
+        help_heading = HEADING
     )]
-    pub flow_seeds: Option<Seeds>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub flow_seeds: Option<String>,
     /// Which way lines go from their seeds [default: both, of particles forward]
     #[arg(
         long,
         value_enum,
         value_name = "WAY",
         requires = "flow",
-        help_heading = "Lines"
+        help_heading = HEADING
     )]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub flow_direction: Option<DirectionWord>,
     /// What is written as the value of each vertex and colours tubes: a variable, or for tubes one colour R:G:B, 0 to 1
     /// [default: the true speed]
@@ -143,14 +147,18 @@ pub struct FlowFlags {
         long,
         value_name = "VAR|R:G:B",
         requires = "flow",
-        help_heading = "Lines"
+        value_parser = word_of::<FlowColor>,
+        help_heading = HEADING
     )]
-    pub flow_color: Option<FlowColor>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub flow_color: Option<String>,
     /// Lines are no longer, each way, in world length
-    #[arg(long, value_name = "L", value_parser = positive, requires = "flow", help_heading = "Lines")]
+    #[arg(long, value_name = "L", value_parser = positive, requires = "flow", help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub flow_length: Option<f64>,
     /// Lines are followed no longer, each way: seconds, or with s, min, h or d
-    #[arg(long, value_name = "T", value_parser = duration, requires = "flow", help_heading = "Lines")]
+    #[arg(long, value_name = "T", value_parser = duration, requires = "flow", help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub flow_time: Option<f64>,
     /// The variables of the wind: to the east, to the north, upwards [default: by their standard names, then U and V, u and
     /// v ...]
@@ -158,9 +166,52 @@ pub struct FlowFlags {
         long,
         value_name = "U,V[,W|none]",
         requires = "flow",
-        help_heading = "Lines"
+        value_parser = word_of::<WindWords>,
+        help_heading = HEADING
     )]
-    pub wind: Option<WindWords>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wind: Option<String>,
+}
+
+const HEADING: &str = "Lines";
+
+impl FlowFlags {
+    /// How seeds are chosen, where that is said.
+    pub(super) fn seeds(&self) -> Result<Option<Seeds>, Error> {
+        parsed("--flow-seeds", self.flow_seeds.as_deref())
+    }
+
+    /// What colours lines, where that is said.
+    pub(super) fn color(&self) -> Result<Option<FlowColor>, Error> {
+        parsed("--flow-color", self.flow_color.as_deref())
+    }
+
+    /// The variables of the wind, where they are said.
+    pub(super) fn wind_words(&self) -> Result<Option<WindWords>, Error> {
+        parsed("--wind", self.wind.as_deref())
+    }
+}
+
+/// A word as it was said, if it can be read.
+fn word_of<T: FromStr<Err: Display>>(text: &str) -> Result<String, String> {
+    match text.parse::<T>() {
+        Ok(_) => Ok(text.to_owned()),
+        Err(problem) => Err(problem.to_string()),
+    }
+}
+
+/// A scene file may say anything.
+fn parsed<T: FromStr<Err: Display>>(flag: &str, text: Option<&str>) -> Result<Option<T>, Error> {
+    let parse = |text: &str| {
+        let read = text.parse();
+        read.map_err(|problem: T::Err| {
+            Error::usage(
+                format!("{flag} {text}: {problem}"),
+                "`stratavox render --help` shows what it may be",
+            )
+        })
+    };
+    text.map(parse).transpose()
 }
 
 fn positive(text: &str) -> Result<f64, String> {

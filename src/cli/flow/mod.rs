@@ -5,16 +5,21 @@
 //! ```
 
 mod causes;
+mod colors;
 mod components;
+mod drawn;
 mod flags;
 mod ground;
 mod seeds;
+mod style;
 mod tubes;
 mod value;
 mod variable;
 mod wind;
 
+pub use drawn::DrawnLines;
 pub use flags::FlowFlags;
+pub use style::FlowStyleFlags;
 
 use super::{Error, exaggerate, flags::InputFlags, progress::Progress, signals::Gate};
 use crate::flow::write::{Geography, LineValues, write_csv, write_vtp};
@@ -35,6 +40,14 @@ const PARTICLES: Seeds = Seeds::Random {
     count: 200,
     seed: 0,
 };
+
+/// Lines, with the wind that they follow.
+struct Traced {
+    lines: Vec<Line>,
+    values: LineValues,
+    wind: Wind,
+}
+
 /// A kind of file for lines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum LineFormat {
@@ -62,8 +75,20 @@ impl FlowFlags {
     /// What can be refused before anything is read.
     pub fn check(&self, path: &Path) -> Result<(), Error> {
         let format = LineFormat::of_path(path)?;
+        self.check_words()?;
+        match (self.color()?, format) {
+            (Some(FlowColor::One(_)), LineFormat::Vtp | LineFormat::Csv) => Err(Error::usage(
+                "--flow-color R:G:B is for tubes",
+                "--flow-color VAR writes the values of a variable",
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    /// The same of words that do not depend on what is made of the lines.
+    pub fn check_words(&self) -> Result<(), Error> {
         let word = self.flow.map_or("stream", FlowWord::name);
-        let is_even = matches!(self.flow_seeds, Some(Seeds::Even | Seeds::EvenAt(_)));
+        let is_even = matches!(self.seeds()?, Some(Seeds::Even | Seeds::EvenAt(_)));
         if self.flow != Some(FlowWord::Stream) && is_even {
             return Err(Error::usage(
                 format!("--flow {word} with --flow-seeds even: particles keep no distance"),
@@ -77,13 +102,38 @@ impl FlowFlags {
                 "leave out --flow-direction",
             ));
         }
-        match (&self.flow_color, format) {
-            (Some(FlowColor::One(_)), LineFormat::Vtp | LineFormat::Csv) => Err(Error::usage(
-                "--flow-color R:G:B is for tubes",
-                "--flow-color VAR writes the values of a variable",
-            )),
-            _ => Ok(()),
+        Ok(())
+    }
+
+    /// Reads the wind, whose notes `of_file` hears, and traces the lines.
+    fn traced(
+        &self,
+        word: FlowWord,
+        input: &InputFlags,
+        of_file: &Progress,
+        progress: &Progress,
+    ) -> Result<Traced, Error> {
+        let limits = input.limits();
+        let variables = Variables { input, limits };
+        let is_of_particles = word != FlowWord::Stream;
+        let wind = wind::read(&variables, self.wind_words()?.as_ref(), word, of_file)?;
+        let start = self.start(word, input, &wind)?;
+        progress.stage("trace", 0, 1);
+        let lines = self.lines(word, &wind, start, &variables, progress)?;
+        causes::say(&lines, progress);
+        if word == FlowWord::Path {
+            causes::say_displacement(&lines, &wind, progress);
         }
+        let at = |time: f64| if is_of_particles { time } else { start };
+        let values = match self.color()? {
+            Some(FlowColor::Variable(name)) => value::along(&lines, &name, &wind, at, &variables)?,
+            _ => LineValues::speeds(&lines),
+        };
+        Ok(Traced {
+            lines,
+            values,
+            wind,
+        })
     }
 
     /// Reads the wind, traces the lines and writes them.
@@ -97,22 +147,11 @@ impl FlowFlags {
         gate: &Gate,
     ) -> Result<(), Error> {
         let format = LineFormat::of_path(path)?;
-        let limits = input.limits();
-        let variables = Variables { input, limits };
-        let is_of_particles = word != FlowWord::Stream;
-        let wind = wind::read(&variables, self.wind.as_ref(), word, progress)?;
-        let start = self.start(word, input, &wind)?;
-        progress.stage("trace", 0, 1);
-        let lines = self.lines(word, &wind, start, &variables, progress)?;
-        causes::say(&lines, progress);
-        if word == FlowWord::Path {
-            causes::say_displacement(&lines, &wind, progress);
-        }
-        let at = |time: f64| if is_of_particles { time } else { start };
-        let values = match &self.flow_color {
-            Some(FlowColor::Variable(name)) => value::along(&lines, name, &wind, at, &variables)?,
-            _ => LineValues::speeds(&lines),
-        };
+        let Traced {
+            lines,
+            values,
+            wind,
+        } = self.traced(word, input, progress, progress)?;
         progress.stage("write", 0, 1);
         let make = || OutputFile::create(path, force);
         let mut file = gate.unfinished(make, |file| file.part().to_owned())?;
@@ -121,7 +160,7 @@ impl FlowFlags {
             LineFormat::Vtp => write_vtp(&lines, &values, &mut out),
             LineFormat::Csv => write_csv(&lines, &values, geography(&wind), &mut out),
             LineFormat::Glb => {
-                let one = match self.flow_color {
+                let one = match self.color()? {
                     Some(FlowColor::One(color)) => Some(color),
                     _ => None,
                 };
@@ -189,7 +228,7 @@ impl FlowFlags {
         } else {
             PARTICLES
         };
-        let words = self.flow_seeds.clone().unwrap_or(default);
+        let words = self.seeds()?.unwrap_or(default);
         let direction = match (self.flow_direction, word) {
             (Some(direction), _) => direction.into(),
             (None, FlowWord::Stream) => Direction::Both,

@@ -28,6 +28,7 @@ pub fn prepared<'a>(
         classification: &shown.classification,
         stream: shown.stream(),
         beside: parts.beside(),
+        lines: shown.lines(),
         settings: &keep(&views.first, framing.view()?).settings,
         extent_pixels: framing.extent_pixels(),
         layers,

@@ -3,6 +3,8 @@
 use super::preclassified;
 use crate::cli::Error;
 use crate::cli::flags::{ClassificationFlags, Component, Plan, SceneFlags};
+use crate::cli::renderer::REFERENCE;
+use crate::offscreen::check_geometry;
 use crate::shaders::MAX_CHANNELS;
 use crate::technique::{Mode, Settings};
 use crate::volume::Header;
@@ -18,7 +20,8 @@ pub fn shows_several(scene: &SceneFlags, header: &Header) -> Result<bool, Error>
     let (plan, _) = plan(scene, header)?;
     let mode = scene.sampling.mode.unwrap_or_default();
     let has_labels = scene.labels.labels.is_some();
-    Ok(plan != Plan::One || has_labels || has_beside(scene, mode))
+    let has_lines = scene.flow.flow.is_some();
+    Ok(plan != Plan::One || has_labels || has_lines || has_beside(scene, mode))
 }
 
 /// True where words name something that is mixed with the volume, sample by sample. Labels are in composites alone.
@@ -76,6 +79,41 @@ fn check_with(scene: &SceneFlags, mode: Mode) -> Result<(), Error> {
     Ok(())
 }
 
+/// What lines do not go with.
+fn check_lines(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
+    if scene.flow.flow.is_none() {
+        return Ok(());
+    }
+    scene.flow.check_words()?;
+    let refused =
+        |problem: &str, hint: &str| Err(Error::usage(format!("--flow {problem}"), hint.to_owned()));
+    if let Err(problem) = check_geometry(settings) {
+        return refused(
+            &format!("takes --technique raycast and no --aa-uneven: {problem}"),
+            "leave them out",
+        );
+    }
+    if scene.section.section.is_some() {
+        return refused(
+            "with --section: lines lie beside a cut, and not in it",
+            "leave out one of them",
+        );
+    }
+    if scene.device.iter().any(|device| device == REFERENCE) {
+        return refused(
+            "with --device reference: the CPU references draw volumes alone",
+            "leave out --device",
+        );
+    }
+    if scene.flow_style.hide_volume && settings.mode != Mode::Composite {
+        return refused(
+            "with --hide-volume and another mode: there is no volume to project",
+            "leave out --mode",
+        );
+    }
+    Ok(())
+}
+
 fn check_in(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
     let mode = settings.mode;
     scene.modes.check(settings)?;
@@ -87,6 +125,7 @@ fn check_in(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
         ));
     }
     check_with(scene, mode)?;
+    check_lines(scene, settings)?;
     scene.opacity.check()?;
     preclassified::check(scene, settings)?;
     if scene.opacity.are_given() && mode != Mode::Composite {

@@ -20,6 +20,7 @@ pub use streamed::{is_wanted as wants_stream, open as open_stream};
 use super::{
     Error,
     flags::{ChannelWord, Classification, ClassificationFlags, Plan, SceneFlags, Subject, context},
+    flow::DrawnLines,
     load::open_first,
     look::{Seen, base_of},
     memory::{self, DeviceRoom},
@@ -62,6 +63,8 @@ pub struct SceneInputs {
     stream: Option<Stream>,
     /// Of a stream every n-th voxel.
     overview: Option<Arc<Volume>>,
+    /// Lines along the wind.
+    lines: Option<DrawnLines>,
 }
 
 #[derive(Debug)]
@@ -104,7 +107,27 @@ impl SceneInputs {
             channels: Vec::new(),
             stream: None,
             overview: None,
+            lines: None,
         }
+    }
+
+    /// Lines that are drawn with the volume.
+    pub fn lines(&self) -> Option<&DrawnLines> {
+        self.lines.as_ref()
+    }
+
+    /// The same with the lines that the words ask for, and without the volume where they say so.
+    fn with_lines(mut self, scene: &SceneFlags, progress: &Progress) -> Result<Self, Error> {
+        let (flow, style) = (&scene.flow, &scene.flow_style);
+        self.lines = DrawnLines::of(flow, style, &scene.input, self.height_factor, progress)?;
+        if style.hide_volume
+            && let Classification::Function(function) = &mut self.classification
+        {
+            for point in &mut function.opacity {
+                point.opacity = 0.0;
+            }
+        }
+        Ok(self)
     }
 
     /// Reads what the words name, for a picture of these settings. Under `--look auto` the first of several variables is
@@ -146,7 +169,8 @@ impl SceneInputs {
         if streamed::is_wanted(source.as_ref(), scene, settings, device)? {
             return Self::streamed(source, scene, settings, device, progress);
         }
-        Self::of(source, scene, settings, device, progress)
+        let shown = Self::of(source, scene, settings, device, progress)?;
+        shown.with_lines(scene, progress)
     }
 
     /// Where the voxels come from, where they are not in memory.

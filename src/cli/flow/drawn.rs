@@ -1,0 +1,143 @@
+//! Lines along a wind in a picture.
+//!
+//! ```text
+//! radius = width / 2 pixels where the camera is turned to
+//! head   a round cone from 2.8 radii to none, 10 radii long, every 60 pixels
+//! ```
+
+use super::super::{Error, flags::InputFlags, progress::Progress};
+use super::colors::LineColors;
+use super::flags::{FlowColor, FlowFlags, FlowWord};
+use super::style::{FlowStyleFlags, StyleWord};
+use crate::camera::Camera;
+use crate::geometry::{RoundCones, Vertex};
+use glam::DVec3;
+
+/// Pixels.
+const WIDTH: f64 = 3.0;
+/// Of arrow heads: how far apart in pixels, how wide and how long in radii.
+const APART_PIXELS: f64 = 60.0;
+const HEAD_RADII: f64 = 2.8;
+const HEAD_LENGTH_RADII: f64 = 10.0;
+
+/// Lines in the drawn world, with their colours.
+#[derive(Clone, Debug)]
+pub struct DrawnLines {
+    lines: Vec<Vec<(DVec3, [f32; 3])>>,
+    width_pixels: f64,
+    has_heads: bool,
+}
+
+impl DrawnLines {
+    /// The lines that the words name, drawn so much higher than they are; `None` where there is no word.
+    pub fn of(
+        flags: &FlowFlags,
+        style: &FlowStyleFlags,
+        input: &InputFlags,
+        height_factor: f64,
+        progress: &Progress,
+    ) -> Result<Option<Self>, Error> {
+        let Some(word) = flags.flow else {
+            return Ok(None);
+        };
+        flags.check_words()?;
+        // What is drawn is seldom the wind. What there is to say of the file was said of the volume.
+        let of_file = &InputFlags {
+            variable: None,
+            component: None,
+            ..input.clone()
+        };
+        let quiet = Progress::of_part();
+        let traced = flags.traced(word, of_file, &quiet, progress)?;
+        let one = match flags.color()? {
+            Some(FlowColor::One(color)) => Some(color),
+            _ => None,
+        };
+        let values = &traced.values;
+        let range = style.flow_range.map(|range| range.0);
+        let colors = LineColors::new(values, one, style.flow_colormap.as_deref(), range);
+        if one.is_none() {
+            let [low, high] = colors.range;
+            progress.note(&format!(
+                "lines are coloured by {}, from {low:.4} to {high:.4}",
+                values.name
+            ));
+        }
+        let stretch = DVec3::new(1.0, 1.0, height_factor);
+        let mut lines = Vec::new();
+        for (line, numbers) in traced.lines.iter().zip(&values.numbers) {
+            for range in line.piece_ranges() {
+                let piece = line.vertices[range.clone()].iter().zip(&numbers[range]);
+                let drawn =
+                    piece.map(|(vertex, &value)| (stretch * vertex.place, colors.of(value)));
+                lines.push(drawn.collect());
+            }
+        }
+        let width_pixels = style.flow_width.unwrap_or(WIDTH);
+        let style = style.flow_style.unwrap_or(match word {
+            FlowWord::Stream => StyleWord::Arrows,
+            FlowWord::Path | FlowWord::Streak => StyleWord::Tube,
+        });
+        Ok(Some(Self {
+            lines,
+            width_pixels,
+            has_heads: style == StyleWord::Arrows,
+        }))
+    }
+
+    /// As they are drawn for this camera in a picture of so many pixels.
+    pub fn cones(&self, camera: &Camera, extent_pixels: [u32; 2]) -> RoundCones {
+        let pixel = pixel_at_target(camera, extent_pixels);
+        let radius = 0.5 * self.width_pixels * pixel;
+        let mut cones = RoundCones::default();
+        for line in &self.lines {
+            cones.add_line(line.iter().map(|&(place, color)| Vertex {
+                place,
+                radius,
+                color,
+            }));
+            if self.has_heads {
+                add_heads(&mut cones, line, radius, APART_PIXELS * pixel);
+            }
+        }
+        cones
+    }
+}
+
+/// World length of a pixel at the distance of the target.
+fn pixel_at_target(camera: &Camera, extent_pixels: [u32; 2]) -> f64 {
+    let rays = camera.rays(extent_pixels);
+    match camera.projection.is_perspective() {
+        true => rays.direction_dx.length() * (camera.target - camera.eye).dot(rays.forward),
+        false => rays.origin_dx.length(),
+    }
+}
+
+/// Heads along a line; one in its middle where it is short.
+fn add_heads(cones: &mut RoundCones, line: &[(DVec3, [f32; 3])], radius: f64, apart: f64) {
+    let chords = || line.windows(2).map(|pair| (pair[1].0 - pair[0].0).length());
+    let length: f64 = chords().sum();
+    if length < HEAD_LENGTH_RADII * radius {
+        return;
+    }
+    let count = (length / apart).floor().max(1.0);
+    let mut next = 0.5 * length / count;
+    let mut done = 0.0;
+    for pair in line.windows(2) {
+        let [(a, color), (b, _)] = [pair[0], pair[1]];
+        let chord = (b - a).length();
+        while next <= done + chord && next < length {
+            let along = (b - a) / chord;
+            let place = a + (next - done) * along;
+            let end = |place, radius| Vertex {
+                place,
+                radius,
+                color,
+            };
+            let tip = place + HEAD_LENGTH_RADII * radius * along;
+            cones.add_line([end(place, HEAD_RADII * radius), end(tip, 0.05 * radius)]);
+            next += length / count;
+        }
+        done += chord;
+    }
+}
