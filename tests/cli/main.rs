@@ -30,6 +30,7 @@ mod errors;
 mod examples;
 mod figures;
 mod flow;
+mod flow_drawn;
 mod info;
 mod info_structure;
 #[cfg(unix)]

@@ -1,0 +1,177 @@
+//! Lines along the wind in pictures and films.
+
+use crate::person::Folder;
+use std::fs;
+
+const STORM: &str = "phantom:storm,n=16";
+const SIDE: usize = 60;
+/// A pixel a unit of the world.
+const VIEW: &str =
+    "--target 0,0,0 --projection orthographic --view-height 60 --size 60x60 --background none";
+const ABOVE: &str = "--eye 0,0,100 --up 0,1,0";
+const SOUTH: &str = "--eye 0,-100,0 --up 0,0,1";
+
+/// The numbers of a picture.
+fn picture(folder: &Folder, words: &str) -> Vec<[f32; 4]> {
+    let ran = folder.run(&format!("render {STORM} {words} -o a.npy --force"));
+    ran.assert_done();
+    let bytes = fs::read(folder.path("a.npy")).expect("a picture");
+    let numbers = &bytes[bytes.len() - 16 * SIDE * SIDE..];
+    let number = |b: &[u8]| f32::from_le_bytes(b.try_into().expect("four bytes"));
+    let pixel = |b: &[u8]| [0, 4, 8, 12].map(|i| number(&b[i..i + 4]));
+    numbers.chunks(16).map(pixel).collect()
+}
+
+/// Places of the vertices that `convert` writes.
+fn places(folder: &Folder, words: &str) -> Vec<[f64; 3]> {
+    folder
+        .run(&format!("convert {STORM} {words} -o l.csv --force"))
+        .assert_done();
+    let text = fs::read_to_string(folder.path("l.csv")).expect("the lines");
+    let place = |row: &str| {
+        let numbers: Vec<f64> = row
+            .split(',')
+            .map(|n| n.parse().unwrap_or(f64::NAN))
+            .collect();
+        [numbers[2], numbers[3], numbers[4]]
+    };
+    text.lines().skip(1).map(place).collect()
+}
+
+#[test]
+fn lines_are_drawn_where_they_are_written() {
+    let folder = Folder::new();
+    let seeds = "--flow stream --flow-seeds rake:-15,-15,2,15,15,9,6";
+    let places = places(&folder, seeds);
+    assert!(places.len() > 60, "{}", places.len());
+    for (view, exaggerate) in [(ABOVE, 1), (ABOVE, 2), (SOUTH, 1), (SOUTH, 2)] {
+        let drawn = picture(
+            &folder,
+            &format!(
+                "{seeds} {VIEW} {view} --look plain --variable vapor --hide-volume --flow-style tube --flow-width 2 \
+                 --flow-color 0:1:0 --exaggerate {exaggerate}"
+            ),
+        );
+        // The place in the picture, and how far each pixel is from the next line.
+        let at = |[x, y, z]: [f64; 3]| {
+            let up = if view == ABOVE {
+                y
+            } else {
+                f64::from(exaggerate) * z
+            };
+            [x + 0.5 * SIDE as f64, 0.5 * SIDE as f64 - up]
+        };
+        for place in &places {
+            let [x, y] = at(*place).map(|n| n.floor() as usize);
+            let [r, g, b, a] = drawn[y * SIDE + x];
+            assert!(a == 1.0 && g > 0.2, "{view} {place:?}: {r} {g} {b}");
+        }
+        for (i, pixel) in drawn.iter().enumerate() {
+            let center = [i % SIDE, i / SIDE].map(|n| n as f64 + 0.5);
+            // Chords are as long as a cell, 3 pixels, at most, and lines a pixel to each side.
+            let is_near = places.iter().any(|&place| {
+                let [x, y] = at(place);
+                (x - center[0]).hypot(y - center[1]) < 1.0 + 1.6
+            });
+            assert!(
+                is_near || pixel[3] == 0.0,
+                "{view}: pixel {i} is far from all lines"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_volume_lies_before_and_behind_its_lines() {
+    let folder = Folder::new();
+    let lines = "--flow stream --flow-seeds grid:5,5,3 --flow-color 1:0:0";
+    let words = format!("{VIEW} {ABOVE} --look plain --variable vapor");
+    let [alone, hidden, both] = [
+        words.clone(),
+        format!("{words} {lines} --hide-volume"),
+        format!("{words} {lines}"),
+    ]
+    .map(|words| picture(&folder, &words));
+    let mut mixed = 0;
+    for i in 0..SIDE * SIDE {
+        let is_line = hidden[i][3] > 0.0;
+        match is_line {
+            // A ray that meets no line is the same to the bit.
+            false => assert_eq!(both[i], alone[i], "pixel {i}"),
+            // The volume takes some light and gives some.
+            true => {
+                assert!(both[i][3] == 1.0 && alone[i][3] < 1.0, "pixel {i}");
+                assert!(both[i][0] <= hidden[i][0] + alone[i][0] + 1e-6);
+                mixed += usize::from(both[i] != hidden[i]);
+            }
+        }
+    }
+    assert!(mixed > 100, "{mixed}");
+    // Over a projection they lie whole.
+    let over = picture(&folder, &format!("{words} {lines} --mode mip"));
+    for (over, hidden) in over.iter().zip(&hidden) {
+        assert!(hidden[3] == 0.0 || over == hidden);
+    }
+}
+
+#[test]
+fn a_scene_keeps_lines_and_a_film_draws_them_at_each_time() {
+    let folder = Folder::new();
+    let words = "--variable vapor --flow stream --flow-seeds random:9,4 --flow-range 0,30 --flow-colormap viridis --flow-width 2";
+    let fixed = "--size 40x30 --force";
+    folder
+        .run(&format!(
+            "render {STORM} {words} -o a.png --save-scene s.json {fixed}"
+        ))
+        .assert_done();
+    folder
+        .run("render --scene s.json -o b.png --force")
+        .assert_done();
+    let read = |name: &str| fs::read(folder.path(name)).expect(name);
+    assert_eq!(read("a.png"), read("b.png"));
+    let plain = format!("--look plain {words} --mode mip --window 0,9 {fixed}");
+    folder
+        .run(&format!(
+            "animate {STORM},times=3 {plain} --times -o f%d.png"
+        ))
+        .assert_done();
+    for time in [0, 2] {
+        folder
+            .run(&format!(
+                "render {STORM},times=3 {plain} --time {time} -o one.png"
+            ))
+            .assert_done();
+        assert_eq!(
+            read(&format!("f{time}.png")),
+            read("one.png"),
+            "time {time}"
+        );
+    }
+    assert_ne!(read("f0.png"), read("f2.png"));
+}
+
+#[test]
+fn what_lines_cannot_be_drawn_with_is_refused_by_name() {
+    let folder = Folder::new();
+    for (words, wanted) in [
+        ("--technique slices-3d", "--technique raycast"),
+        ("--aa 4 --aa-uneven", "--aa-uneven"),
+        ("--section axial", "--section"),
+        ("--device reference", "--device reference"),
+        ("--hide-volume --mode mip", "--hide-volume"),
+        ("--flow-width 0.5", "1.2 to 1000"),
+        ("--flow-colormap jet", "a colour map"),
+        ("--wind u,nothing", "nothing"),
+    ] {
+        let ran = folder.run(&format!(
+            "render {STORM} --variable vapor --flow stream {words} -o a.png --size 20x20"
+        ));
+        assert!([2, 3].contains(&ran.code), "{words}: {ran:#?}");
+        assert!(ran.err.contains(wanted), "{words}: {ran:#?}");
+    }
+    let ran = folder.run("render phantom:head,n=8 --flow stream -o a.png --size 20x20");
+    assert!(ran.code != 0 && ran.err.contains("no wind"), "{ran:#?}");
+    folder
+        .run("render phantom:head,n=8 --hide-volume -o a.png")
+        .assert_refused(2, &["--flow"]);
+}
