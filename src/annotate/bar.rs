@@ -24,10 +24,14 @@ pub struct Bar<'a> {
     pub is_log: bool,
     /// Values of surfaces.
     pub levels: Vec<f64>,
+    /// Which of so many bars, one below the other.
+    pub slot: [usize; 2],
 }
 
 /// Of the bar's height in that of the picture.
 const HEIGHT: f64 = 0.45;
+/// The same of several, of the part of the picture that each has.
+const HEIGHT_OF_SEVERAL: f64 = 0.58;
 /// Greys of the check, sRGB.
 const CHECK: [f64; 2] = [0.45, 0.65];
 
@@ -55,7 +59,14 @@ impl Bar<'_> {
         let [width, height] = sheet.size();
         let em = sheet.em;
         let (unit, factor) = units::scaled(self.unit, low.abs().max(high.abs()));
-        let tall = (HEIGHT * height).round();
+        let [nth, count] = self.slot.map(|n| n as f64);
+        let share = if count > 1.0 {
+            HEIGHT_OF_SEVERAL
+        } else {
+            HEIGHT
+        };
+        let tall = (share * height / count).round();
+        let middle = (nth + 0.5) / count * height;
         let most = (tall / (1.7 * em)) as usize;
         let (ticks, exponent) = match self.is_log {
             true => (units::log_ticks([low * factor, high * factor], most), 0),
@@ -75,7 +86,7 @@ impl Bar<'_> {
         let left = (right - numbers - 0.75 * em - across).round();
         let caption = self.caption_lines(sheet, unit, exponent);
         let line = 1.3 * em;
-        let top = (0.5 * (height - tall) + 0.5 * line * caption.len() as f64).round();
+        let top = (middle - 0.5 * tall + 0.5 * line * caption.len() as f64).round();
         let ink = sheet.ink([left, top - line], [right, top + tall]);
         for (at, text) in caption.iter().rev().enumerate() {
             let y = top - 0.8 * em - line * at as f64;

@@ -78,6 +78,19 @@ pub struct Seen<'a> {
     pub time: f64,
     /// The range of what the mode projects, where colours are of it.
     pub projected: Option<[f64; 2]>,
+    /// What colours lines in the picture.
+    pub lines: Option<&'a LineLegend>,
+}
+
+/// What the colours of lines mean.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LineLegend {
+    /// Colours of values.
+    pub function: TransferFunction,
+    /// What the values are.
+    pub caption: String,
+    /// As the file has it.
+    pub unit: Option<String>,
 }
 
 /// Marks as pixels of a picture: linear light, premultiplied.
@@ -176,10 +189,9 @@ impl Annotation {
     fn words(&self, sheet: &mut Sheet, projector: &Projector, seen: &Seen) -> Result<(), Error> {
         let ([width, height], em) = (sheet.size(), sheet.em);
         let mut right = width;
-        if self.marks.bar
-            && let Some(left) = self.colors(sheet, seen)?
-        {
-            right = left;
+        if self.marks.bar {
+            let lefts = [self.colors(sheet, seen)?, lines(sheet, seen)?];
+            right = lefts.into_iter().flatten().fold(right, f64::min);
         }
         let mut baseline = 1.6 * em;
         if let Some(title) = &self.marks.title {
@@ -231,6 +243,7 @@ impl Annotation {
                     unit: unit.as_deref(),
                     is_log: self.is_log,
                     levels: Vec::new(),
+                    slot: slot(seen),
                 }
                 .draw(sheet)?;
                 self.levels_below(sheet, seen);
@@ -263,6 +276,7 @@ impl Annotation {
             unit: integral.as_deref().or(facts.unit.as_deref()),
             is_log: self.is_log,
             levels: Vec::new(),
+            slot: slot(seen),
         };
         bar.draw(sheet)
     }
@@ -283,6 +297,7 @@ impl Annotation {
                     unit: self.facts.unit.as_deref(),
                     is_log: self.is_log,
                     levels: levels.iter().map(|level| level.value).collect(),
+                    slot: slot(seen),
                 };
                 return bar.draw(sheet);
             }
@@ -331,6 +346,32 @@ impl Annotation {
             .map(|(at, srgb)| (srgb, name(at)))
             .collect()
     }
+}
+
+/// The bar of the volume is over that of lines.
+fn slot(seen: &Seen) -> [usize; 2] {
+    [0, if seen.lines.is_some() { 2 } else { 1 }]
+}
+
+/// The bar of lines; where it begins.
+fn lines(sheet: &mut Sheet, seen: &Seen) -> Result<Option<f64>, Error> {
+    let Some(legend) = seen.lines else {
+        return Ok(None);
+    };
+    let bar = Bar {
+        function: &legend.function,
+        depth: None,
+        caption: &legend.caption,
+        unit: legend.unit.as_deref(),
+        is_log: false,
+        levels: Vec::new(),
+        slot: if seen.function.is_some() {
+            [1, 2]
+        } else {
+            [0, 1]
+        },
+    };
+    bar.draw(sheet)
 }
 
 /// How many reference lengths of the function an eighth of the box's diagonal is; `None` where something else says how

@@ -3,6 +3,7 @@
 use super::{
     Error,
     flags::{Classification, ScaleWord, SceneFlags, WithWord},
+    flow::DrawnLines,
     load::open,
     look::View,
     renderer::Renderer,
@@ -97,7 +98,10 @@ pub fn finish(
     let seen = Seen {
         camera,
         settings: &view.settings,
-        function: classification.function(),
+        function: classification
+            .function()
+            .filter(|_| !view.scene.flow_style.hide_volume),
+        lines: shown.lines().and_then(DrawnLines::legend),
         beside: parts.beside(),
         grid: shown.volume.grid(),
         height_factor: shown.height_factor,

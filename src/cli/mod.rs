@@ -43,6 +43,7 @@ mod sample_limit;
 mod scene_file;
 mod scene_inputs;
 mod sheet;
+mod show;
 mod signals;
 mod small_file;
 mod stdin;

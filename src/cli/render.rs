@@ -13,6 +13,7 @@ use super::{
     renderer::Device,
     scene_file,
     scene_inputs::SceneInputs,
+    show::ShowFlags,
     signals::Gate,
     stdin::STANDARD,
     timings::{FrameTime, Timings, ms_since, peak_rss_bytes},
@@ -52,6 +53,8 @@ pub struct Render {
     /// name of INPUT with .png, in this folder]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    show: ShowFlags,
     #[command(flatten)]
     scene: SceneFlags,
     /// Flags from a file; those of the command line win
@@ -124,6 +127,7 @@ impl Render {
     /// One picture.
     fn draw(mut self, gate: &Gate) -> Result<(), Error> {
         let mut scene = self.whole_scene()?;
+        let shown_by = self.show.expand(&mut scene)?;
         let output = match &self.output {
             Some(output) => output.clone(),
             None => default_output(&scene.input, self.force),
@@ -163,6 +167,7 @@ impl Render {
         )?;
 
         let progress = Progress::new(self.progress);
+        shown_by.iter().for_each(|words| progress.note(words));
         progress.stage("prepare", 0, 1);
         let device = Device::begin(scene.one_device()?);
         progress.stage("read", 0, 1);

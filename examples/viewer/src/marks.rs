@@ -168,6 +168,7 @@ pub fn drawn(view: &View, camera: &Camera, extent: [u32; 2], parts: u32) -> Resu
         height_factor: subject.way.height_factor,
         time: f64::from(subject.time),
         projected: None,
+        lines: None,
     };
     let mut annotation = view.annotation.clone();
     // Words are as large in the window, however many pixels the picture has.

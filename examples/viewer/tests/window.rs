@@ -650,6 +650,7 @@ fn marks_are_laid_over_the_picture_and_their_box_shows_through_the_volume() {
         height_factor: 1.0,
         time: 0.0,
         projected: None,
+        lines: None,
     };
     let marks = annotation.draw(&background, &seen).unwrap();
     let over = |over: [f32; 4], under: [f32; 4]| {

@@ -345,7 +345,11 @@ impl Drawing<'_> {
             let seen = SeenFrame {
                 camera: &self.shots[number as usize].camera,
                 settings: &ready.settings,
-                function: ready.classification.function(),
+                function: ready
+                    .classification
+                    .function()
+                    .filter(|_| !self.scene.flow_style.hide_volume),
+                lines: self.content.lines().and_then(DrawnLines::legend),
                 beside: work.parts.beside(),
                 grid: self.placed.0,
                 height_factor: self.placed.1,

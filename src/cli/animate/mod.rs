@@ -41,6 +41,7 @@ use super::{
     renderer::Device,
     scene_file,
     scene_inputs::{self, SceneInputs, wants_stream},
+    show::ShowFlags,
     signals::Gate,
     timings::Timings,
 };
@@ -95,6 +96,8 @@ pub struct Animate {
     /// Frames a second: 25, 29.97, 30000/1001
     #[arg(long, value_name = "F", default_value = "25", help_heading = "Film")]
     fps: Rate,
+    #[command(flatten)]
+    show: ShowFlags,
     #[command(flatten)]
     scene: SceneFlags,
     /// Flags from a file; those of the command line win. A scene keeps the pictures, not the motion: --turntable,
@@ -320,6 +323,10 @@ impl Animate {
             None => self.scene.clone(),
         };
         scene.default_to_auto();
+        if let Some(words) = self.show.expand(&mut scene)? {
+            progress.note(&words);
+            self.times |= self.turntable.is_none() && self.keyframes.is_none();
+        }
         scene.annotate.check()?;
         let target = Target::new(&self.output)?;
         let layers = scene.picture.layers();

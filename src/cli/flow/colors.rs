@@ -4,15 +4,17 @@
 //! colour = map((value - low) / (high - low)),   low 0 of speeds, else the lowest value;   high: 99.9 % of vertices are under it
 //! ```
 
-use crate::color::decode_srgb;
+use crate::color::{decode_srgb, encode_srgb};
 use crate::flow::write::LineValues;
-use crate::transfer::Colormap;
+use crate::transfer::{ColorPoint, Colormap, Interpolation, TransferFunction};
 
 /// Colours span up to the value that this part of the vertices does not exceed.
 const MOST: f64 = 0.999;
 /// From yellow to violet, the strongest: matplotlib's plasma from here to here.
 const MAP: &str = "plasma";
 const ENDS: [f64; 2] = [0.97, 0.2];
+/// Pieces of the colours of a bar.
+const POINTS: u32 = 64;
 
 /// From the values of lines to linear colours.
 #[derive(Clone, Debug)]
@@ -38,6 +40,23 @@ impl LineColors {
             map: Colormap::from_name(map.unwrap_or(MAP)),
             ends: if map.is_some() { [0.0, 1.0] } else { ENDS },
             range: range.unwrap_or_else(|| range_of(values)),
+        }
+    }
+
+    /// The colours over their range.
+    pub fn function(&self) -> TransferFunction {
+        let [low, high] = self.range;
+        let point = |i: u32| {
+            let value = low + f64::from(i) / f64::from(POINTS) * (high - low);
+            let srgb = self.of(value).map(|c| f64::from(encode_srgb(c)));
+            ColorPoint { value, srgb }
+        };
+        TransferFunction {
+            color: (0..=POINTS).map(point).collect(),
+            opacity: Vec::new(),
+            reference_length: None,
+            interpolation: Interpolation::Linear,
+            gradient_transfer: None,
         }
     }
 

@@ -9,6 +9,7 @@ use super::super::{Error, flags::InputFlags, progress::Progress};
 use super::colors::LineColors;
 use super::flags::{FlowColor, FlowFlags, FlowWord};
 use super::style::{FlowStyleFlags, StyleWord};
+use crate::annotate::LineLegend;
 use crate::camera::Camera;
 use crate::geometry::{RoundCones, Vertex};
 use glam::DVec3;
@@ -26,6 +27,8 @@ pub struct DrawnLines {
     lines: Vec<Vec<(DVec3, [f32; 3])>>,
     width_pixels: f64,
     has_heads: bool,
+    /// What their colours mean, where they have several.
+    legend: Option<LineLegend>,
 }
 
 impl DrawnLines {
@@ -82,7 +85,17 @@ impl DrawnLines {
             lines,
             width_pixels,
             has_heads: style == StyleWord::Arrows,
+            legend: one.is_none().then(|| LineLegend {
+                function: colors.function(),
+                caption: traced.caption,
+                unit: traced.unit,
+            }),
         }))
+    }
+
+    /// What their colours mean; `None` where they have one.
+    pub fn legend(&self) -> Option<&LineLegend> {
+        self.legend.as_ref()
     }
 
     /// As they are drawn for this camera in a picture of so many pixels.

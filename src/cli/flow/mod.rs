@@ -18,17 +18,18 @@ mod variable;
 mod wind;
 
 pub use drawn::DrawnLines;
-pub use flags::FlowFlags;
+pub use flags::{FlowFlags, FlowWord};
 pub use style::FlowStyleFlags;
 
 use super::{Error, exaggerate, flags::InputFlags, progress::Progress, signals::Gate};
+use crate::annotate::{caption, unit};
 use crate::flow::write::{Geography, LineValues, write_csv, write_vtp};
 use crate::flow::{
     Direction, EvenLines, Limits, Line, Seeds, even_stream_lines, path_lines_from, streak_lines,
     stream_lines,
 };
 use crate::picture::{OutputError, OutputFile, OutputProblem};
-use flags::{FlowColor, FlowWord};
+use flags::FlowColor;
 use glam::DVec3;
 use std::io::{BufWriter, Write};
 use std::path::Path;
@@ -46,6 +47,9 @@ struct Traced {
     lines: Vec<Line>,
     values: LineValues,
     wind: Wind,
+    /// What the values are, and their unit as the file has it.
+    caption: String,
+    unit: Option<String>,
 }
 
 /// A kind of file for lines.
@@ -125,14 +129,24 @@ impl FlowFlags {
             causes::say_displacement(&lines, &wind, progress);
         }
         let at = |time: f64| if is_of_particles { time } else { start };
-        let values = match self.color()? {
-            Some(FlowColor::Variable(name)) => value::along(&lines, &name, &wind, at, &variables)?,
-            _ => LineValues::speeds(&lines),
+        let (values, caption, unit) = match self.color()? {
+            Some(FlowColor::Variable(name)) => {
+                let source = variables.open(&name)?;
+                let words = (caption(source.header()), unit(source.header()));
+                let values = value::along(&lines, &name, &wind, at, &variables)?;
+                (values, words.0, words.1)
+            }
+            _ => {
+                let unit = wind.header.is_earth.then(|| "m s-1".to_owned());
+                (LineValues::speeds(&lines), "Wind speed".to_owned(), unit)
+            }
         };
         Ok(Traced {
             lines,
             values,
             wind,
+            caption,
+            unit,
         })
     }
 
@@ -151,6 +165,7 @@ impl FlowFlags {
             lines,
             values,
             wind,
+            ..
         } = self.traced(word, input, progress, progress)?;
         progress.stage("write", 0, 1);
         let make = || OutputFile::create(path, force);

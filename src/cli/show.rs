@@ -1,0 +1,160 @@
+//! `--show vapor|wind|both`: a scene of the weather by one word, which stands for flags that are said.
+//!
+//! | word | stands for |
+//! |---|---|
+//! | `vapor` | `--variable VAPOUR --mode iso --iso-color-by TEMPERATURE --annotate` |
+//! | `wind` | `--variable VAPOUR --hide-volume --flow stream --annotate` |
+//! | `both` | the first with `--flow stream` |
+
+use super::{Error, flags::SceneFlags, flow::FlowWord, load::open};
+use crate::annotate::Marks;
+use crate::technique::Mode;
+use crate::volume::Header;
+use clap::{Args, ValueEnum};
+
+/// What is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ShowWord {
+    /// A surface of water vapour, coloured by temperature
+    Vapor,
+    /// Stream lines of the wind, coloured by its speed
+    Wind,
+    /// Both
+    Both,
+}
+
+/// CF standard names, then names of WRF, ECMWF, NCEP and CMIP.
+const VAPOUR: [&[&str]; 2] = [
+    &[
+        "humidity_mixing_ratio",
+        "specific_humidity",
+        "relative_humidity",
+    ],
+    &["QVAPOR", "q", "hus", "SPFH", "vapor"],
+];
+const TEMPERATURE: [&[&str]; 2] = [&["air_temperature"], &["temperature", "t", "ta", "TMP"]];
+
+/// `--show`, of commands that draw one volume.
+#[derive(Args, Clone, Copy, Debug, Default)]
+pub struct ShowFlags {
+    /// A scene of the weather: a surface of water vapour coloured by temperature, stream lines of the wind coloured by
+    /// its speed, or both; it stands for flags, which are said. A film shows all times
+    #[arg(long, value_enum, value_name = "SCENE", help_heading = "Lines")]
+    pub show: Option<ShowWord>,
+}
+
+impl ShowFlags {
+    /// Fills in the flags that the word stands for, and says them.
+    pub fn expand(self, scene: &mut SceneFlags) -> Result<Option<String>, Error> {
+        let Some(word) = self.show else {
+            return Ok(None);
+        };
+        let words = expand(word, scene)?;
+        scene.default_to_auto();
+        let name = word
+            .to_possible_value()
+            .map(|value| value.get_name().to_owned());
+        Ok(Some(format!(
+            "--show {}: {words}",
+            name.unwrap_or_default()
+        )))
+    }
+}
+
+/// Fills in the flags that the word stands for and no other flag says; what they are, as a person would write them.
+fn expand(word: ShowWord, scene: &mut SceneFlags) -> Result<String, Error> {
+    let limits = scene.input.limits();
+    let source = open(&scene.input, &limits)?;
+    let header = source.header();
+    let wanted = |names: [&[&str]; 2], what: &str| {
+        found(header, names).ok_or_else(|| {
+            let wanted = names.concat().join(", ");
+            Error::usage(
+                format!(
+                    "--show: no {what} in the input: wanted one of {wanted}, found {}",
+                    header.variables.join(", ")
+                ),
+                "--variable, --mode iso, --iso-color-by and --flow draw other variables so",
+            )
+        })
+    };
+    let has_surface = word != ShowWord::Wind;
+    if scene.input.variable.is_none() && !header.variables.is_empty() {
+        // Lines alone want a grid, of whatever it is.
+        scene.input.variable = match (wanted(VAPOUR, "water vapour"), has_surface) {
+            (Ok(name), _) => Some(name),
+            (Err(refused), true) => return Err(refused),
+            (Err(_), false) => None,
+        };
+    }
+    if has_surface {
+        scene.sampling.mode.get_or_insert(Mode::Iso);
+        if scene.modes.levels.iso_color_by.is_none() {
+            scene.modes.levels.iso_color_by = Some(wanted(TEMPERATURE, "temperature")?);
+        }
+    } else {
+        scene.flow_style.hide_volume = true;
+    }
+    if word != ShowWord::Vapor {
+        scene.flow.flow.get_or_insert(FlowWord::Stream);
+    }
+    if scene.annotate.annotate.is_none() {
+        let usual = Marks::USUAL.parse().expect("marks");
+        scene.annotate.annotate = Some(usual);
+    }
+    let mut words = Vec::new();
+    words.extend(
+        scene
+            .input
+            .variable
+            .iter()
+            .map(|name| format!("--variable {name}")),
+    );
+    words.extend(
+        scene
+            .sampling
+            .mode
+            .iter()
+            .map(|mode| format!("--mode {mode}")),
+    );
+    let by = scene.modes.levels.iso_color_by.iter();
+    words.extend(by.map(|name| format!("--iso-color-by {name}")));
+    if scene.flow_style.hide_volume {
+        words.push("--hide-volume".to_owned());
+    }
+    words.extend(
+        scene
+            .flow
+            .flow
+            .iter()
+            .map(|flow| format!("--flow {}", flow.name())),
+    );
+    words.push("--annotate".to_owned());
+    Ok(words.join(" "))
+}
+
+/// The first variable of these standard names or names; one that is derived before a name alone.
+fn found(header: &Header, [standard, names]: [&[&str]; 2]) -> Option<String> {
+    let by_standard = standard.iter().find_map(|wanted| {
+        let at = header
+            .variable_standard_names
+            .iter()
+            .position(|name| name == wanted)?;
+        header.variables.get(at).cloned()
+    });
+    let derived = || {
+        let one = header
+            .derived
+            .iter()
+            .find(|one| names.contains(&one.name.as_str()));
+        one.map(|one| one.name.clone())
+    };
+    let by_name = || {
+        names
+            .iter()
+            .find(|name| header.variables.iter().any(|own| own == *name))
+    };
+    by_standard
+        .or_else(derived)
+        .or_else(|| by_name().map(|name| (*name).to_owned()))
+}
