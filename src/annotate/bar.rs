@@ -66,7 +66,9 @@ impl Bar<'_> {
             HEIGHT
         };
         let tall = (share * height / count).round();
-        let middle = (nth + 0.5) / count * height;
+        // Words stand below the last of several.
+        let below = if count > 1.0 { 3.0 * em } else { 0.0 };
+        let middle = (nth + 0.5) / count * (height - below);
         let most = (tall / (1.7 * em)) as usize;
         let (ticks, exponent) = match self.is_log {
             true => (units::log_ticks([low * factor, high * factor], most), 0),

@@ -33,15 +33,6 @@ pub fn several(scene: &SceneFlags, header: &Header, shots: &[FilmFrame]) -> Resu
         ));
     }
     let several = scene_inputs::shows_several(scene, header)?;
-    if several && let Some(number) = shots.iter().position(is_between) {
-        let time = shots[number].time;
-        return Err(Error::usage(
-            format!(
-                "frame {number} shows time {time}, and between times one number a voxel is mixed: several are drawn"
-            ),
-            "whole times: --times; or one number: --component N, without --with and --labels",
-        ));
-    }
     if !is_still && !several && scene.labels.label_tf.is_some() {
         return Err(Error::usage(
             "--label-tf: labels of INPUT are drawn of one time",

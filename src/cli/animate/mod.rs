@@ -87,6 +87,9 @@ pub struct Animate {
     /// Show every time of the input; with a turn or keyframes, time runs once through all of them
     #[arg(long, help_heading = "Film")]
     times: bool,
+    /// Frames between two times, whose values are mixed [default: 0; with --show as many as make a film of 96 frames]
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(0..10_000), conflicts_with_all = ["turntable", "keyframes"], help_heading = "Film")]
+    between: Option<u32>,
     /// Change camera, colours, planes and time by the keys of a file
     #[arg(long, value_name = "FILE.json", help_heading = "Film")]
     keyframes: Option<PathBuf>,
@@ -126,6 +129,9 @@ pub struct Animate {
 
 /// Frames of the turntable that a film is where nothing says what it shows: 5 degrees each.
 const TURN_FRAMES: u32 = 72;
+
+/// Frames behind the first of a film of the weather, at least.
+const FRAMES_SHOWN: u32 = 95;
 
 /// Everything that was checked before the first voxel is read.
 struct Plan {
@@ -348,9 +354,16 @@ impl Animate {
                 "say it again: --turntable 120, --times or --keyframes FILE, with its --fps",
             ));
         }
-        let film = Film {
+        if self.between.is_some() && !self.times {
+            return Err(Error::usage(
+                "--between is for the times of the input",
+                "add --times",
+            ));
+        }
+        let mut film = Film {
             turntable: self.turntable,
             times: self.times,
+            between: self.between.unwrap_or(0),
             keyframes: keyframes.transpose()?,
         };
         let mut inputs = scene_file::inputs(&scene, self.scene_file.as_deref());
@@ -365,6 +378,9 @@ impl Animate {
         let limits = scene_inputs::limits(&scene);
         let source = load::open_first(&mut scene, &limits, progress)?;
         let header = source.header();
+        if self.show.show.is_some() && self.between.is_none() && header.times > 1 {
+            film.between = FRAMES_SHOWN.div_ceil(header.times - 1);
+        }
         scene.classification.context = scene.is_auto().then(|| context(header));
         let mode = scene.sampling.mode.unwrap_or_default();
         if let Some(with_level) = scene_inputs::with_level(&scene, mode, source.as_ref(), progress)?

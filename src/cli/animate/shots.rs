@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! --turntable N      azimuth + 360 k / N: the last frame is one step before the first
-//! --times            time u (times - 1): alone, N is the number of times and each is shown once
+//! --times            time u (times - 1): alone, N is (times - 1) (K + 1) + 1 for K frames --between two times
 //! --keyframes FILE   what the keys say at u
 //! ```
 
@@ -27,6 +27,8 @@ pub struct Film {
     pub turntable: Option<u32>,
     /// Time runs from the first to the last.
     pub times: bool,
+    /// Frames between two times of it, where nothing else says how many frames there are.
+    pub between: u32,
     /// What a file says.
     pub keyframes: Option<Keyframes>,
 }
@@ -56,7 +58,7 @@ impl Film {
         let count = match (self.turntable, &self.keyframes) {
             (Some(count), _) => count,
             (None, Some(keyframes)) => keyframes.frame_count,
-            (None, None) if self.times => header.times,
+            (None, None) if self.times => (header.times - 1).saturating_mul(self.between + 1) + 1,
             (None, None) => {
                 return Err(Error::usage(
                     "nothing says what changes from frame to frame",
@@ -252,6 +254,7 @@ mod tests {
     const TIMES: Film = Film {
         turntable: None,
         times: true,
+        between: 0,
         keyframes: None,
     };
 
@@ -275,6 +278,7 @@ mod tests {
         let film = Film {
             turntable: Some(4),
             times: false,
+            between: 0,
             keyframes: None,
         };
         let mut scene = SceneFlags::default();
@@ -304,6 +308,7 @@ mod tests {
             let film = Film {
                 turntable: Some(4),
                 times: false,
+                between: 0,
                 keyframes: None,
             };
             let scene = SceneFlags {
@@ -320,6 +325,7 @@ mod tests {
     fn a_film_of_nothing_and_one_too_long_are_refused() {
         let nothing = Film {
             times: false,
+            between: 0,
             ..TIMES
         };
         for (film, times, code) in [

@@ -1,15 +1,18 @@
-//! Several numbers a voxel, or volumes beside the first, one time after another: each time is read as `render` reads it,
-//! with the colours and windows of the first.
+//! Several numbers a voxel, volumes or lines beside the first, one time after another: each time is read as `render` reads
+//! it, with the colours, windows and seeds of the first; between two times voxels are mixed.
 
+use super::volumes::blend;
 use crate::cli::{
     Error,
-    flags::SceneFlags,
+    flags::{Numbers, SceneFlags},
+    flow::{FilmSeed, FilmTime},
     load::open_first,
     memory::{DeviceMemory, DeviceRoom},
     progress::Progress,
     scene_inputs::{SceneInputs, limits},
 };
 use crate::technique::Settings;
+use std::path::Path;
 
 /// What reading each time takes.
 #[derive(Debug)]
@@ -17,6 +20,8 @@ pub struct Together {
     scene: SceneFlags,
     settings: Settings,
     memory: Option<DeviceMemory>,
+    /// Of the lines of the first time.
+    seeds: Vec<FilmSeed>,
 }
 
 impl Together {
@@ -33,21 +38,55 @@ impl Together {
             scene.channels.channels.clear();
             scene.input.component = None;
         }
+        if let Some(lines) = first.lines() {
+            scene
+                .flow_style
+                .flow_range
+                .get_or_insert(Numbers(lines.range()));
+        }
         Self {
+            seeds: first
+                .lines()
+                .map_or(Vec::new(), |lines| lines.seeds().to_vec()),
             scene,
             settings: settings.clone(),
             memory,
         }
     }
 
+    /// All volumes at a time, and the lines of it.
+    pub fn at(&self, time: f64) -> Result<SceneInputs, Error> {
+        let quiet = Progress::of_part();
+        let [before, after] = [time.floor(), time.ceil()].map(|time| time as u32);
+        let mut shown = self.whole(before)?;
+        if after > before {
+            shown = shown.between(self.whole(after)?, time.fract(), |a, b, share| {
+                blend(a, b, share).map_err(|problem| Error::Input {
+                    path: self
+                        .scene
+                        .input
+                        .file()
+                        .map(Path::to_owned)
+                        .unwrap_or_default(),
+                    problem: problem.to_string(),
+                })
+            })?;
+        }
+        let seeds = &self.seeds;
+        let of_film = (!seeds.is_empty()).then_some(FilmTime { time, seeds });
+        let mut scene = self.scene.clone();
+        scene.input.time = Some(before.to_string());
+        shown.with_lines(&scene, of_film, &quiet)
+    }
+
     /// All volumes of a time. What there is to say was said of the first.
-    pub fn at(&self, time: u32) -> Result<SceneInputs, Error> {
+    fn whole(&self, time: u32) -> Result<SceneInputs, Error> {
         let quiet = Progress::of_part();
         let mut scene = self.scene.clone();
         scene.input.time = Some(time.to_string());
         let limits = limits(&scene);
         let source = open_first(&mut scene, &limits, &quiet)?;
-        let shown = SceneInputs::of_source(source, &scene, &self.settings, self, &quiet)?;
+        let shown = SceneInputs::of(source, &scene, &self.settings, self, &quiet)?;
         Ok(shown.at_level(&scene))
     }
 }

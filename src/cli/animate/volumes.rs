@@ -127,14 +127,15 @@ impl<'a> Volumes<'a> {
         let [before, after] = [time.floor(), time.ceil()].map(|time| time as u32);
         self.kept
             .retain(|&(time, _)| time == before || time == after);
-        let first = self.whole(before)?;
+        let source = match self.of {
+            Of::Source(source, _) => source,
+            Of::Together(together) => return self.together_at(together, time),
+        };
+        let first = self.whole(source, before)?;
         if before == after {
             return Ok(first);
         }
-        let Of::Source(source, _) = self.of else {
-            unreachable!("times of several volumes are whole");
-        };
-        let second = self.whole(after)?;
+        let second = self.whole(source, after)?;
         blend(&first.volume, &second.volume, time.fract())
             .map(|volume| Arc::new(Moment::in_memory(volume)))
             .map_err(|problem| {
@@ -145,29 +146,34 @@ impl<'a> Volumes<'a> {
             })
     }
 
-    fn whole(&mut self, time: u32) -> Result<Arc<Moment>, Error> {
+    fn whole(&mut self, source: &Arc<dyn Source>, time: u32) -> Result<Arc<Moment>, Error> {
         if let Some((_, moment)) = self.kept.iter().find(|kept| kept.0 == time) {
             return Ok(Arc::clone(moment));
         }
         let moment = match self.of {
-            Of::Source(source, Some(memory)) => self.streamed(source, time, memory)?,
-            Of::Source(source, None) => Moment::in_memory(self.read(source, time)?),
-            Of::Together(together) => {
-                let shown = together.at(time)?;
-                Moment {
-                    volume: Arc::clone(&shown.volume),
-                    streamed: None,
-                    together: Some(Box::new(shown)),
-                }
-            }
+            Of::Source(_, Some(memory)) => self.streamed(source, time, memory)?,
+            Of::Source(..) | Of::Together(_) => Moment::in_memory(self.read(source, time)?),
         };
-        let parts = moment.parts();
-        let beside = parts.as_ref().map(|parts| parts.beside().volumes());
-        let beside = beside.unwrap_or_default();
-        (self.saw)(time, &[vec![moment.looked_at()], beside].concat())?;
+        (self.saw)(time, &[moment.looked_at()])?;
         let moment = Arc::new(moment);
         self.kept.push((time, Arc::clone(&moment)));
         Ok(moment)
+    }
+
+    fn together_at(&mut self, together: &Together, time: f64) -> Result<Arc<Moment>, Error> {
+        let shown = together.at(time)?;
+        let moment = Moment {
+            volume: Arc::clone(&shown.volume),
+            streamed: None,
+            together: Some(Box::new(shown)),
+        };
+        if time.fract() == 0.0 {
+            let parts = moment.parts();
+            let beside = parts.as_ref().map(|parts| parts.beside().volumes());
+            let beside = beside.unwrap_or_default();
+            (self.saw)(time as u32, &[vec![moment.looked_at()], beside].concat())?;
+        }
+        Ok(Arc::new(moment))
     }
 
     fn streamed(
@@ -285,7 +291,7 @@ fn value(volume: &Volume, i: usize) -> Option<f64> {
 }
 
 /// Between `a` (`s = 0`) and `b` (`s = 1`); no data where either has none.
-fn blend(a: &Volume, b: &Volume, s: f64) -> Result<Volume, Problem> {
+pub fn blend(a: &Volume, b: &Volume, s: f64) -> Result<Volume, Problem> {
     let is_valid =
         |volume: &Volume, i: usize| volume.validity.as_ref().is_none_or(|valid| valid[i] != 0);
     let mixed = |i: usize| {

@@ -7,6 +7,7 @@
 
 use super::super::{Error, flags::InputFlags, progress::Progress};
 use super::colors::LineColors;
+use super::film::{FilmSeed, FilmTime, seeds_of};
 use super::flags::{FlowColor, FlowFlags, FlowWord};
 use super::style::{FlowStyleFlags, StyleWord};
 use crate::annotate::LineLegend;
@@ -29,6 +30,10 @@ pub struct DrawnLines {
     has_heads: bool,
     /// What their colours mean, where they have several.
     legend: Option<LineLegend>,
+    /// Values at the ends of their colours.
+    range: [f64; 2],
+    /// Where lines of other frames of a film begin.
+    seeds: Vec<FilmSeed>,
 }
 
 impl DrawnLines {
@@ -38,6 +43,7 @@ impl DrawnLines {
         style: &FlowStyleFlags,
         input: &InputFlags,
         height_factor: f64,
+        of_film: Option<FilmTime>,
         progress: &Progress,
     ) -> Result<Option<Self>, Error> {
         let Some(word) = flags.flow else {
@@ -51,7 +57,7 @@ impl DrawnLines {
             ..input.clone()
         };
         let quiet = Progress::of_part();
-        let traced = flags.traced(word, of_file, &quiet, progress)?;
+        let traced = flags.traced(word, of_file, of_film, &quiet, progress)?;
         let one = match flags.color()? {
             Some(FlowColor::One(color)) => Some(color),
             _ => None,
@@ -85,12 +91,27 @@ impl DrawnLines {
             lines,
             width_pixels,
             has_heads: style == StyleWord::Arrows,
+            range: colors.range,
+            seeds: match word {
+                FlowWord::Stream => seeds_of(&traced.lines),
+                FlowWord::Path | FlowWord::Streak => Vec::new(),
+            },
             legend: one.is_none().then(|| LineLegend {
                 function: colors.function(),
                 caption: traced.caption,
                 unit: traced.unit,
             }),
         }))
+    }
+
+    /// Values at the ends of their colours.
+    pub fn range(&self) -> [f64; 2] {
+        self.range
+    }
+
+    /// Where the lines of other frames of a film begin.
+    pub fn seeds(&self) -> &[FilmSeed] {
+        &self.seeds
     }
 
     /// What their colours mean; `None` where they have one.

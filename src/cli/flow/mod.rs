@@ -8,6 +8,7 @@ mod causes;
 mod colors;
 mod components;
 mod drawn;
+mod film;
 mod flags;
 mod ground;
 mod seeds;
@@ -18,6 +19,7 @@ mod variable;
 mod wind;
 
 pub use drawn::DrawnLines;
+pub use film::{FilmSeed, FilmTime};
 pub use flags::{FlowFlags, FlowWord};
 pub use style::FlowStyleFlags;
 
@@ -114,16 +116,24 @@ impl FlowFlags {
         &self,
         word: FlowWord,
         input: &InputFlags,
+        of_film: Option<FilmTime>,
         of_file: &Progress,
         progress: &Progress,
     ) -> Result<Traced, Error> {
         let limits = input.limits();
         let variables = Variables { input, limits };
         let is_of_particles = word != FlowWord::Stream;
-        let wind = wind::read(&variables, self.wind_words()?.as_ref(), word, of_file)?;
-        let start = self.start(word, input, &wind)?;
+        let at = of_film.map(|film| film.time);
+        let wind = wind::read(&variables, self.wind_words()?.as_ref(), word, at, of_file)?;
+        let start = match at {
+            Some(time) => time.fract(),
+            None => self.start(word, input, &wind)?,
+        };
         progress.stage("trace", 0, 1);
-        let lines = self.lines(word, &wind, start, &variables, progress)?;
+        let lines = match of_film {
+            Some(film) => film::lines_from(film.seeds, &wind, start),
+            None => self.lines(word, &wind, start, &variables, progress)?,
+        };
         causes::say(&lines, progress);
         if word == FlowWord::Path {
             causes::say_displacement(&lines, &wind, progress);
@@ -166,7 +176,7 @@ impl FlowFlags {
             values,
             wind,
             ..
-        } = self.traced(word, input, progress, progress)?;
+        } = self.traced(word, input, None, progress, progress)?;
         progress.stage("write", 0, 1);
         let make = || OutputFile::create(path, force);
         let mut file = gate.unfinished(make, |file| file.part().to_owned())?;

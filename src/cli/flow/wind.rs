@@ -27,6 +27,7 @@ pub fn read(
     variables: &Variables<'_>,
     words: Option<&WindWords>,
     word: FlowWord,
+    at: Option<f64>,
     progress: &Progress,
 ) -> Result<Wind, Error> {
     let components = components(variables, words, progress)?;
@@ -37,7 +38,10 @@ pub fn read(
         progress.note(note);
     }
     let (units, up) = units(&components, &header, progress)?;
-    let times = times(variables, &header, word, progress)?;
+    let times = match at {
+        Some(time) => between(time),
+        None => times(variables, &header, word, progress)?,
+    };
     let voxels = header.voxel_count();
     let wanted = voxels.saturating_mul(12 * times.len() as u64 + 12);
     if wanted > variables.limits.max_bytes {
@@ -142,6 +146,16 @@ fn units(
         return Ok((units, false));
     }
     Ok((units, components.up.is_some()))
+}
+
+/// The times around one of a film, in place of seconds counted from the first of them.
+fn between(time: f64) -> Vec<(u32, f64)> {
+    let [before, after] = [time.floor(), time.ceil()];
+    let mut times = vec![(before as u32, 0.0)];
+    if after > before {
+        times.push((after as u32, 1.0));
+    }
+    times
 }
 
 /// The times that are read, and their seconds since the first of the file.

@@ -20,7 +20,7 @@ pub use streamed::{is_wanted as wants_stream, open as open_stream};
 use super::{
     Error,
     flags::{ChannelWord, Classification, ClassificationFlags, Plan, SceneFlags, Subject, context},
-    flow::DrawnLines,
+    flow::{DrawnLines, FilmTime},
     load::open_first,
     look::{Seen, base_of},
     memory::{self, DeviceRoom},
@@ -117,9 +117,14 @@ impl SceneInputs {
     }
 
     /// The same with the lines that the words ask for, and without the volume where they say so.
-    fn with_lines(mut self, scene: &SceneFlags, progress: &Progress) -> Result<Self, Error> {
-        let (flow, style) = (&scene.flow, &scene.flow_style);
-        self.lines = DrawnLines::of(flow, style, &scene.input, self.height_factor, progress)?;
+    pub fn with_lines(
+        mut self,
+        scene: &SceneFlags,
+        of_film: Option<FilmTime>,
+        progress: &Progress,
+    ) -> Result<Self, Error> {
+        let (flow, style, input) = (&scene.flow, &scene.flow_style, &scene.input);
+        self.lines = DrawnLines::of(flow, style, input, self.height_factor, of_film, progress)?;
         if style.hide_volume
             && let Classification::Function(function) = &mut self.classification
         {
@@ -170,7 +175,7 @@ impl SceneInputs {
             return Self::streamed(source, scene, settings, device, progress);
         }
         let shown = Self::of(source, scene, settings, device, progress)?;
-        shown.with_lines(scene, progress)
+        shown.with_lines(scene, None, progress)
     }
 
     /// Where the voxels come from, where they are not in memory.
@@ -261,6 +266,33 @@ impl SceneInputs {
             return preclassified::classified(shown, settings.color_space);
         }
         shown.with_beside(&reader)
+    }
+
+    /// The volumes between these (`share` 0) and those of another time (1), each voxel by `blend`; labels are those of this one.
+    pub fn between(
+        mut self,
+        after: Self,
+        share: f64,
+        blend: impl Fn(&Volume, &Volume, f64) -> Result<Volume, Error>,
+    ) -> Result<Self, Error> {
+        self.volume = Arc::new(blend(&self.volume, &after.volume, share)?);
+        let pairs = match (&mut self.others, after.others) {
+            (Others::Channels(own), Others::Channels(after)) => {
+                for (own, after) in own.iter_mut().zip(after) {
+                    if own.role != Role::Labels {
+                        own.volume = blend(&own.volume, &after.volume, share)?;
+                    }
+                }
+                return Ok(self);
+            }
+            (Others::Colors(own), Others::Colors(after))
+            | (Others::Classified(own), Others::Classified(after)) => own.iter_mut().zip(after),
+            _ => return Ok(self),
+        };
+        for (own, after) in pairs {
+            *own = blend(own, &after, share)?;
+        }
+        Ok(self)
     }
 
     /// True where the file says how its axes lie, in a patient or on the Earth.
