@@ -119,7 +119,25 @@ fn a_film_of_times_shows_what_lies_beside_as_pictures_of_each_time_do() {
         }
         let [first, second] = ["t0.png", "t1.png"].map(|name| fs::read(folder.path(name)));
         assert_ne!(first.expect("a file"), second.expect("a file"), "{words}");
+        // Between two times all volumes are mixed: half way it is the picture of their means.
+        folder
+            .run(&format!(
+                "animate --look plain {storm} {words} --times --between 1 -o b%d.png {SMALL} --force"
+            ))
+            .assert_done();
+        let read = |name: &str| fs::read(folder.path(name)).expect(name);
+        assert_eq!(
+            [read("b0.png"), read("b2.png")],
+            [read("t0.png"), read("t1.png")]
+        );
+        let middle = read("b1.png");
+        assert!(
+            middle != read("b0.png") && middle != read("b2.png"),
+            "{words}"
+        );
     }
+    let refused = folder.run(&format!("animate {storm} --between 2 -o c.gif {SMALL}"));
+    refused.assert_refused(2, &["--between", "--times"]);
 }
 
 #[test]
@@ -132,19 +150,11 @@ fn what_several_numbers_cannot_do_in_a_film_is_refused_by_name() {
         "w.json",
         r#"{"stratavox_keyframes":1,"frames":2,"keys":[{"at":0,"window":[0,9]}]}"#,
     );
-    folder.file(
-        "half.json",
-        r#"{"stratavox_keyframes":1,"frames":3,"keys":[{"at":0,"time":0},{"at":1,"time":1}]}"#,
-    );
     let before = folder.names();
     for (words, said) in [
         (
             "phantom:storm,n=8,variable=u,times=2 --label-tf l.txt --times",
             &["--label-tf", "--time N"][..],
-        ),
-        (
-            "phantom:storm,n=8,variable=u,times=2 --with v.nrrd --keyframes half.json",
-            &["frame 1", "time 0.5", "--times"],
         ),
         (
             "phantom:cells,n=8 --keyframes w.json",
