@@ -19,4 +19,5 @@ draw brain mri-brainsmall/brainsmall.nhdr --tf "$here/brain.json" --shading phon
 draw walnut ct-walnut/walnut.mhd --shading phong --material 0.3,0.6,0.1,10 --light 1,-0.5,0.7 --shadows volume \
     --azimuth 200 --elevation 40 --zoom 1.2
 draw nuclei tiff-nuclei/img3d.tif --mode mida --samples-per-voxel 2 --zoom 1.1
+"$program" render "$volumes/met-wrf/wrf_ci.nc" --show both --size 900x600 --force --progress none -o "$here/weather.png"
 draw pet dicom-pet --mode mip --denoise nlm --view anterior --zoom 1.3

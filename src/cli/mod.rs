@@ -29,6 +29,7 @@ mod line;
 mod load;
 mod look;
 mod manuals;
+mod map;
 mod memory;
 mod output;
 mod planes;

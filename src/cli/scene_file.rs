@@ -67,7 +67,7 @@ pub fn overlay(mut scene: SceneFlags, flags: &SceneFlags) -> SceneFlags {
         scene.input = Default::default();
         scene.opacity = Default::default();
         scene.with = Default::default();
-        (scene.flow, scene.flow_style) = Default::default();
+        (scene.flow, scene.flow_style, scene.map) = Default::default();
     }
     if flags.opacity.are_given() {
         scene.opacity = Default::default();

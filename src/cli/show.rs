@@ -6,7 +6,7 @@
 //! | `wind` | `--variable VAPOUR --hide-volume --flow stream --annotate` |
 //! | `both` | the first with `--flow stream` |
 
-use super::{Error, flags::SceneFlags, flow::FlowWord, load::open};
+use super::{Error, flags::SceneFlags, flow::FlowWord, load::open, map::MapWords};
 use crate::annotate::Marks;
 use crate::technique::Mode;
 use crate::volume::Header;
@@ -98,6 +98,9 @@ fn expand(word: ShowWord, scene: &mut SceneFlags) -> Result<String, Error> {
     if word != ShowWord::Vapor {
         scene.flow.flow.get_or_insert(FlowWord::Stream);
     }
+    if scene.map.map.is_none() && MapWords::can_show(header) {
+        scene.map.map = Some(MapWords::ALL.parse().expect("words"));
+    }
     if scene.annotate.annotate.is_none() {
         let usual = Marks::USUAL.parse().expect("marks");
         scene.annotate.annotate = Some(usual);
@@ -129,6 +132,7 @@ fn expand(word: ShowWord, scene: &mut SceneFlags) -> Result<String, Error> {
             .iter()
             .map(|flow| format!("--flow {}", flow.name())),
     );
+    words.extend(scene.map.map.iter().map(|map| format!("--map {map}")));
     words.push("--annotate".to_owned());
     Ok(words.join(" "))
 }

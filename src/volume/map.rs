@@ -16,6 +16,20 @@ pub struct MapProjection {
     pub standard_longitude: Option<f64>,
     /// Latitude and longitude in the middle of the grid. `None` where the file does not say.
     pub center: Option<[f64; 2]>,
+    /// A corner, by which others can see whether the file agrees with itself. `None` where the file does not say.
+    pub corner: Option<MapCorner>,
+}
+
+/// The first point of a grid on a map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "json", derive(serde::Serialize, serde::Deserialize))]
+pub struct MapCorner {
+    /// By the latitudes and longitudes in the file, degrees.
+    pub latitude_longitude: [f64; 2],
+    /// x and y, world, by the steps of the grid.
+    pub world: [f64; 2],
+    /// World length of a step.
+    pub step: f64,
 }
 
 /// A kind of map.

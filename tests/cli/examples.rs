@@ -287,6 +287,15 @@ fn every_command_of_the_page_of_annotation_runs() {
     assert!(lines >= 4, "{lines} lines");
 }
 
+#[test]
+fn every_command_of_the_page_of_weather_runs() {
+    let (folder, _, lines) = run_page("docs/weather.md");
+    assert_eq!(lines, 4);
+    for name in ["vapor.png", "wind.png", "storm.gif", "updraft.vtp"] {
+        assert!(folder.path(name).exists(), "{name}");
+    }
+}
+
 /// The page shows the file and what is printed of it.
 #[test]
 fn the_drawing_of_the_page_of_structure_has_the_addresses_that_are_shown() {

@@ -1,6 +1,7 @@
 //! Lines along the wind in pictures and films.
 
 use crate::person::Folder;
+use crate::real::data;
 use std::fs;
 
 const STORM: &str = "phantom:storm,n=16";
@@ -239,4 +240,110 @@ fn one_word_stands_for_the_flags_that_it_says() {
             "render phantom:head,n=8 --show vapor -o c.png {fixed}"
         ))
         .assert_refused(2, &["--show", "temperature"]);
+}
+
+fn fixture(name: &str) -> String {
+    format!(
+        "{}/tests/fixtures/netcdf/{name}",
+        env!("CARGO_MANIFEST_DIR")
+    )
+}
+
+#[test]
+fn meridians_parallels_and_coasts_lie_where_degrees_do() {
+    let folder = Folder::new();
+    // A degree is 69.2206 km by 111.1951 km there: the middle of the picture lies at 6 east, 51 north.
+    let view = "--eye 415.3234,5670.9491,9999 --target 415.3234,5670.9491,0 --up 0,1,0 --projection orthographic \
+                --view-height 400 --size 60x60 --background none --look plain --variable pot --hide-volume";
+    let drawn = |map: &str| {
+        let file = fixture("theta.nc");
+        let ran = folder.run(&format!(
+            "render {file} {view} --map {map} -o a.npy --force"
+        ));
+        ran.assert_done();
+        let bytes = fs::read(folder.path("a.npy")).expect("a picture");
+        let numbers = &bytes[bytes.len() - 16 * SIDE * SIDE..];
+        let number = |b: &[u8]| f32::from_le_bytes(b.try_into().expect("four bytes"));
+        let alphas = numbers.chunks(16).map(|pixel| number(&pixel[12..]) > 0.0);
+        alphas.collect::<Vec<bool>>()
+    };
+    let lines = drawn("graticule=1");
+    let is_line = |x: usize, y: usize| lines[y * SIDE + x];
+    // The margin ends a pixel inside of the picture in the west.
+    for along in 2..SIDE {
+        // 6 and 5 east; 51 and 52 north. A pixel is 6.667 km.
+        assert!(
+            is_line(29, along) && is_line(30, along) && is_line(19, along),
+            "{along}"
+        );
+        assert!(
+            is_line(along, 29) && is_line(along, 30) && is_line(along, 13),
+            "{along}"
+        );
+    }
+    for [x, y] in [[25, 20], [35, 40], [10, 5], [45, 35]] {
+        assert!(!is_line(x, y), "{x} {y}");
+    }
+    // From 2 to 9 east, 49 to 53 north: the coast of the Netherlands from the west, and no coast in the south east.
+    let coast = drawn("coast");
+    let count = |rows: std::ops::Range<usize>, columns: std::ops::Range<usize>| {
+        rows.flat_map(|y| columns.clone().map(move |x| [x, y]))
+            .filter(|&[x, y]| coast[y * SIDE + x])
+            .count()
+    };
+    assert!(count(0..30, 0..30) > 30 && count(30..60, 30..60) == 0);
+    let borders = drawn("borders");
+    assert!(borders.iter().filter(|is| **is).count() > 60 && borders != coast);
+    let all = drawn("coast,borders,graticule=1");
+    for i in 0..SIDE * SIDE {
+        assert_eq!(all[i], lines[i] || coast[i] || borders[i], "pixel {i}");
+    }
+}
+
+#[test]
+fn a_map_is_refused_where_there_is_no_place_or_the_file_disagrees_with_itself() {
+    let folder = Folder::new();
+    for (words, wanted) in [
+        (
+            format!("{STORM} --variable vapor --map"),
+            "no place on the Earth",
+        ),
+        (
+            "phantom:head,n=8 --map coast".to_owned(),
+            "no place on the Earth",
+        ),
+        (
+            "phantom:head,n=8 --map coast,rivers".to_owned(),
+            "\"rivers\"",
+        ),
+        (
+            "phantom:head,n=8 --map graticule=0".to_owned(),
+            "0.1 to 90 degrees",
+        ),
+        (
+            format!("{} --variable T --map", fixture("wrf_derived.nc")),
+            "latitudes in the file and its projection differ by",
+        ),
+    ] {
+        let ran = folder.run(&format!("render {words} -o a.png --size 20x20"));
+        assert!(ran.code == 2 && ran.err.contains(wanted), "{ran:#?}");
+    }
+}
+
+#[test]
+fn a_forecast_is_shown_with_its_coast() {
+    let Some(data) = data() else {
+        println!("skipped: no data");
+        return;
+    };
+    let folder = Folder::new();
+    let file = data.join("met-wrf/wrf_ci.nc");
+    let ran = folder.run(&format!(
+        "render {} --show both -o a.png --size 120x80",
+        file.display()
+    ));
+    ran.assert_done();
+    let said = "--show both: --variable QVAPOR --mode iso --iso-color-by temperature --flow stream --map \
+                coast,borders,graticule --annotate";
+    assert!(ran.err.contains(said), "{ran:#?}");
 }

@@ -50,7 +50,7 @@ impl SceneFlags {
             false => Look::Auto,
         });
         // Opaque edges at one ray a pixel look broken.
-        if self.flow.flow.is_some() && self.is_auto() {
+        if self.has_lines() && self.is_auto() {
             self.sampling.aa.get_or_insert(4);
         }
     }

@@ -68,6 +68,7 @@ pub use with::{WithFlags, WithWord};
 
 use super::Error;
 use super::flow::{FlowFlags, FlowStyleFlags};
+use super::map::MapFlags;
 use crate::technique::Settings;
 use clap::Args;
 use serde::{Deserialize, Serialize};
@@ -106,6 +107,8 @@ pub struct SceneFlags {
     #[command(flatten)]
     pub flow_style: FlowStyleFlags,
     #[command(flatten)]
+    pub map: MapFlags,
+    #[command(flatten)]
     pub light: LightFlags,
     #[command(flatten)]
     pub gradient: GradientFlags,
@@ -135,6 +138,11 @@ impl SceneFlags {
     pub fn inline_files(&mut self) -> Result<(), Error> {
         self.classification.inline_file()?;
         self.with.inline_files()
+    }
+
+    /// True where lines are drawn with the volume: of the wind, or of the Earth.
+    pub fn has_lines(&self) -> bool {
+        self.flow.flow.is_some() || self.map.map.is_some()
     }
 
     /// What to compute, for a picture kept so exactly.

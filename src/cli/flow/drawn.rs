@@ -1,18 +1,24 @@
-//! Lines along a wind in a picture.
+//! Lines in a picture: along a wind, and of the Earth.
 //!
 //! ```text
 //! radius = width / 2 pixels where the camera is turned to
 //! head   a round cone from 2.8 radii to none, 10 radii long, every 60 pixels
 //! ```
 
-use super::super::{Error, flags::InputFlags, progress::Progress};
+use super::super::{
+    Error,
+    flags::{InputFlags, SceneFlags},
+    progress::Progress,
+};
 use super::colors::LineColors;
 use super::film::{FilmSeed, FilmTime, seeds_of};
-use super::flags::{FlowColor, FlowFlags, FlowWord};
-use super::style::{FlowStyleFlags, StyleWord};
+use super::flags::{FlowColor, FlowWord};
+use super::style::StyleWord;
 use crate::annotate::LineLegend;
 use crate::camera::Camera;
+use crate::color::decode_srgb;
 use crate::geometry::{RoundCones, Vertex};
+use crate::volume::Header;
 use glam::DVec3;
 
 /// Pixels.
@@ -22,42 +28,76 @@ const APART_PIXELS: f64 = 60.0;
 const HEAD_RADII: f64 = 2.8;
 const HEAD_LENGTH_RADII: f64 = 10.0;
 
-/// Lines in the drawn world, with their colours.
-#[derive(Clone, Debug)]
+/// Lines in the drawn world: of a wind, of the Earth.
+#[derive(Clone, Debug, Default)]
 pub struct DrawnLines {
-    lines: Vec<Vec<(DVec3, [f32; 3])>>,
-    width_pixels: f64,
-    has_heads: bool,
-    /// What their colours mean, where they have several.
+    sets: Vec<LineSet>,
+    /// What the colours of the wind mean, where they have several.
     legend: Option<LineLegend>,
-    /// Values at the ends of their colours.
+    /// Values at the ends of these colours.
     range: [f64; 2],
     /// Where lines of other frames of a film begin.
     seeds: Vec<FilmSeed>,
 }
 
+/// Lines that look alike.
+#[derive(Clone, Debug)]
+struct LineSet {
+    lines: Vec<Vec<(DVec3, [f32; 3])>>,
+    width_pixels: f64,
+    has_heads: bool,
+}
+
 impl DrawnLines {
-    /// The lines that the words name, drawn so much higher than they are; `None` where there is no word.
+    /// The lines that the words name, drawn so much higher than they are, around the volume of this header; `None` where
+    /// there is no word.
     pub fn of(
-        flags: &FlowFlags,
-        style: &FlowStyleFlags,
-        input: &InputFlags,
+        scene: &SceneFlags,
+        header: &Header,
         height_factor: f64,
         of_film: Option<FilmTime>,
         progress: &Progress,
     ) -> Result<Option<Self>, Error> {
-        let Some(word) = flags.flow else {
+        if !scene.has_lines() {
             return Ok(None);
-        };
+        }
+        let stretch = DVec3::new(1.0, 1.0, height_factor);
+        let mut drawn = Self::default();
+        if let Some(map) = &scene.map.map {
+            for line in map.lines(header)? {
+                let color = [decode_srgb(line.grey); 3];
+                let places = line.places.iter().map(|&place| (stretch * place, color));
+                drawn.sets.push(LineSet {
+                    lines: vec![places.collect()],
+                    width_pixels: line.width,
+                    has_heads: false,
+                });
+            }
+        }
+        if let Some(word) = scene.flow.flow {
+            drawn.add_wind(word, scene, stretch, of_film, progress)?;
+        }
+        Ok(Some(drawn))
+    }
+
+    fn add_wind(
+        &mut self,
+        word: FlowWord,
+        scene: &SceneFlags,
+        stretch: DVec3,
+        of_film: Option<FilmTime>,
+        progress: &Progress,
+    ) -> Result<(), Error> {
+        let (flags, style) = (&scene.flow, &scene.flow_style);
         flags.check_words()?;
         // What is drawn is seldom the wind. What there is to say of the file was said of the volume.
-        let of_file = &InputFlags {
+        let input = &InputFlags {
             variable: None,
             component: None,
-            ..input.clone()
+            ..scene.input.clone()
         };
         let quiet = Progress::of_part();
-        let traced = flags.traced(word, of_file, of_film, &quiet, progress)?;
+        let traced = flags.traced(word, input, of_film, &quiet, progress)?;
         let one = match flags.color()? {
             Some(FlowColor::One(color)) => Some(color),
             _ => None,
@@ -72,7 +112,6 @@ impl DrawnLines {
                 values.name
             ));
         }
-        let stretch = DVec3::new(1.0, 1.0, height_factor);
         let mut lines = Vec::new();
         for (line, numbers) in traced.lines.iter().zip(&values.numbers) {
             for range in line.piece_ranges() {
@@ -82,26 +121,25 @@ impl DrawnLines {
                 lines.push(drawn.collect());
             }
         }
-        let width_pixels = style.flow_width.unwrap_or(WIDTH);
-        let style = style.flow_style.unwrap_or(match word {
+        let look = style.flow_style.unwrap_or(match word {
             FlowWord::Stream => StyleWord::Arrows,
             FlowWord::Path | FlowWord::Streak => StyleWord::Tube,
         });
-        Ok(Some(Self {
+        self.sets.push(LineSet {
             lines,
-            width_pixels,
-            has_heads: style == StyleWord::Arrows,
-            range: colors.range,
-            seeds: match word {
-                FlowWord::Stream => seeds_of(&traced.lines),
-                FlowWord::Path | FlowWord::Streak => Vec::new(),
-            },
-            legend: one.is_none().then(|| LineLegend {
-                function: colors.function(),
-                caption: traced.caption,
-                unit: traced.unit,
-            }),
-        }))
+            width_pixels: style.flow_width.unwrap_or(WIDTH),
+            has_heads: look == StyleWord::Arrows,
+        });
+        self.range = colors.range;
+        if word == FlowWord::Stream {
+            self.seeds = seeds_of(&traced.lines);
+        }
+        self.legend = one.is_none().then(|| LineLegend {
+            function: colors.function(),
+            caption: traced.caption,
+            unit: traced.unit,
+        });
+        Ok(())
     }
 
     /// Values at the ends of their colours.
@@ -122,16 +160,18 @@ impl DrawnLines {
     /// As they are drawn for this camera in a picture of so many pixels.
     pub fn cones(&self, camera: &Camera, extent_pixels: [u32; 2]) -> RoundCones {
         let pixel = pixel_at_target(camera, extent_pixels);
-        let radius = 0.5 * self.width_pixels * pixel;
         let mut cones = RoundCones::default();
-        for line in &self.lines {
-            cones.add_line(line.iter().map(|&(place, color)| Vertex {
-                place,
-                radius,
-                color,
-            }));
-            if self.has_heads {
-                add_heads(&mut cones, line, radius, APART_PIXELS * pixel);
+        for set in &self.sets {
+            let radius = 0.5 * set.width_pixels * pixel;
+            for line in &set.lines {
+                cones.add_line(line.iter().map(|&(place, color)| Vertex {
+                    place,
+                    radius,
+                    color,
+                }));
+                if set.has_heads {
+                    add_heads(&mut cones, line, radius, APART_PIXELS * pixel);
+                }
             }
         }
         cones

@@ -36,8 +36,8 @@ pub struct FlowStyleFlags {
     #[arg(long, value_name = "NAME", value_parser = map, requires = "flow", help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flow_colormap: Option<String>,
-    /// Draw the lines without the volume
-    #[arg(long, requires = "flow", help_heading = HEADING)]
+    /// Draw lines without the volume
+    #[arg(long, help_heading = HEADING)]
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub hide_volume: bool,
 }

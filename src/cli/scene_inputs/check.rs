@@ -20,7 +20,8 @@ pub fn shows_several(scene: &SceneFlags, header: &Header) -> Result<bool, Error>
     let (plan, _) = plan(scene, header)?;
     let mode = scene.sampling.mode.unwrap_or_default();
     let has_labels = scene.labels.labels.is_some();
-    let has_lines = scene.flow.flow.is_some();
+    // Lines of the Earth stay as they are.
+    let has_lines = scene.has_lines();
     Ok(plan != Plan::One || has_labels || has_lines || has_beside(scene, mode))
 }
 
@@ -81,12 +82,22 @@ fn check_with(scene: &SceneFlags, mode: Mode) -> Result<(), Error> {
 
 /// What lines do not go with.
 fn check_lines(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
-    if scene.flow.flow.is_none() {
-        return Ok(());
+    if !scene.has_lines() {
+        return match scene.flow_style.hide_volume {
+            true => Err(Error::usage(
+                "--hide-volume leaves nothing without --flow or --map",
+                "leave it out",
+            )),
+            false => Ok(()),
+        };
     }
     scene.flow.check_words()?;
+    let word = match scene.flow.flow {
+        Some(_) => "--flow",
+        None => "--map",
+    };
     let refused =
-        |problem: &str, hint: &str| Err(Error::usage(format!("--flow {problem}"), hint.to_owned()));
+        |problem: &str, hint: &str| Err(Error::usage(format!("{word} {problem}"), hint.to_owned()));
     if let Err(problem) = check_geometry(settings) {
         return refused(
             &format!("takes --technique raycast and no --aa-uneven: {problem}"),

@@ -123,8 +123,8 @@ impl SceneInputs {
         of_film: Option<FilmTime>,
         progress: &Progress,
     ) -> Result<Self, Error> {
-        let (flow, style, input) = (&scene.flow, &scene.flow_style, &scene.input);
-        self.lines = DrawnLines::of(flow, style, input, self.height_factor, of_film, progress)?;
+        self.lines = DrawnLines::of(scene, &self.header, self.height_factor, of_film, progress)?;
+        let style = &scene.flow_style;
         if style.hide_volume
             && let Classification::Function(function) = &mut self.classification
         {

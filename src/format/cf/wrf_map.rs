@@ -9,7 +9,7 @@
 
 use super::model::{Arrays, Kind, Variable};
 use super::values::Values;
-use crate::volume::{MapKind, MapProjection};
+use crate::volume::{MapCorner, MapKind, MapProjection};
 
 /// A file whose centre is farther from that of its domain is a part of it, degrees.
 const APART: f64 = 0.1;
@@ -45,6 +45,32 @@ pub(super) fn map(arrays: &dyn Arrays, notes: &mut Vec<String>) -> Option<MapPro
         ],
         standard_longitude: number("STAND_LON"),
         center: found.or(said).map(|(lat, lon)| [lat, lon]),
+        corner: corner(arrays),
+    })
+}
+
+/// The first point by XLAT and XLONG, and by the steps around the middle.
+fn corner(arrays: &dyn Arrays) -> Option<MapCorner> {
+    let first = |name| mean(arrays, name, |_| (0, 1));
+    let latitude_longitude = [first("XLAT")?, first("XLONG")?];
+    let variable = arrays.variables().iter().find(|v| v.name == "XLAT")?;
+    let sizes: Vec<u64> = variable.dimensions.iter().map(|d| d.size).collect();
+    let &[.., ny, nx] = &sizes[..] else {
+        return None;
+    };
+    let attributes = arrays.attributes();
+    let step = |name: &str| {
+        attributes
+            .number(name)
+            .filter(|n| *n > 0.0)
+            .map(|n| 1e-3 * n)
+    };
+    let (dx, dy) = (step("DX")?, step("DY")?);
+    let half = |n: u64, step: f64| -0.5 * (n as f64 - 1.0) * step;
+    Some(MapCorner {
+        latitude_longitude,
+        world: [half(nx, dx), half(ny, dy)],
+        step: dx.min(dy),
     })
 }
 
@@ -56,6 +82,14 @@ fn turned(degrees: f64) -> f64 {
 /// The mean over the points around the middle of the last two dimensions, at the first index of the others. Longitudes
 /// on both sides of 180 degrees go on.
 fn middle(arrays: &dyn Arrays, name: &str) -> Option<f64> {
+    mean(arrays, name, |size| {
+        let first = size.saturating_sub(1) / 2;
+        (first, if size % 2 == 0 { 2 } else { 1 })
+    })
+}
+
+/// The mean over points of the last two dimensions, of which `part` says the first and their number.
+fn mean(arrays: &dyn Arrays, name: &str, part: impl Fn(u64) -> (u64, u64)) -> Option<f64> {
     let variable: &Variable = arrays.variables().iter().find(|v| v.name == name)?;
     let Kind::Numbers(_) = variable.kind else {
         return None;
@@ -64,10 +98,7 @@ fn middle(arrays: &dyn Arrays, name: &str) -> Option<f64> {
     let from_end = variable.dimensions.len().checked_sub(2)?;
     let place = |(k, size): (usize, u64)| match k < from_end {
         true => (0, 1),
-        false => {
-            let first = size.saturating_sub(1) / 2;
-            (first, if size % 2 == 0 { 2 } else { 1 })
-        }
+        false => part(size),
     };
     let sizes = variable.dimensions.iter().map(|dimension| dimension.size);
     let (start, count): (Vec<u64>, Vec<u64>) = sizes.enumerate().map(place).unzip();

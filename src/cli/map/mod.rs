@@ -1,0 +1,349 @@
+//! `--map coast,borders,graticule`: where the volume lies on the Earth, drawn on the ground.
+//!
+//! ```text
+//! margin      a fifth of the box's larger side around it
+//! graticule   meridians and parallels every 1, 2, 5, 10, 15 or 30 degrees, four of them at least
+//! ```
+
+mod earth;
+mod project;
+
+use super::Error;
+use crate::volume::{Grid, Header};
+use clap::Args;
+use earth::{Lines, earth};
+use glam::DVec3;
+use project::Projection;
+use serde::{Deserialize, Serialize};
+use std::{fmt, str::FromStr};
+
+/// What is drawn of the Earth.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct MapWords {
+    coast: bool,
+    borders: bool,
+    /// Degrees between lines, 0 where they are chosen.
+    graticule: Option<f64>,
+}
+
+/// The words, none of them filled in.
+#[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct MapFlags {
+    /// Draw the Earth on the ground around the volume: coast, borders, graticule or graticule=DEG
+    #[arg(long, value_name = "LIST", num_args = 0..=1, default_missing_value = MapWords::ALL, help_heading = "Lines")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub map: Option<MapWords>,
+}
+
+/// A line on the ground, world, before heights are exaggerated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GroundLine {
+    /// Its places.
+    pub places: Vec<DVec3>,
+    /// Of its grey, sRGB.
+    pub grey: f32,
+    /// Pixels.
+    pub width: f64,
+}
+
+/// Of the larger side of the box.
+const MARGIN: f64 = 0.2;
+/// Degrees between lines of a graticule.
+const STEPS: [f64; 8] = [0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0];
+/// Degrees between places of a line that is bent on the map.
+const FINE: f64 = 0.25;
+/// Grey and pixels of coast, borders and graticule.
+const COAST: (f32, f64) = (0.8, 2.0);
+const BORDERS: (f32, f64) = (0.6, 1.5);
+const GRATICULE: (f32, f64) = (0.4, 1.3);
+
+impl MapWords {
+    /// All of it.
+    pub const ALL: &str = "coast,borders,graticule";
+
+    /// True where a volume has a place on the Earth.
+    pub fn can_show(header: &Header) -> bool {
+        let off = |projection: Projection| {
+            header
+                .map
+                .is_none_or(|map| projection.disagreement(&map).is_none())
+        };
+        Projection::of(header).is_some_and(off)
+    }
+
+    /// The lines around a volume.
+    ///
+    /// # Errors
+    /// Where it has no place on the Earth, or none is known.
+    pub fn lines(&self, header: &Header) -> Result<Vec<GroundLine>, Error> {
+        let projection = Projection::of(header).ok_or_else(|| {
+            Error::usage(
+                "--map: the volume has no place on the Earth: wanted latitudes and longitudes, or a WRF file with MAP_PROJ, \
+                 TRUELAT1 and XLAT",
+                "leave out --map",
+            )
+        })?;
+        let off = header.map.and_then(|map| projection.disagreement(&map));
+        if let Some(off) = off {
+            return Err(Error::usage(
+                format!(
+                    "--map: latitudes in the file and its projection differ by {off:.2} km at a corner"
+                ),
+                "leave out --map",
+            ));
+        }
+        let grid = Grid {
+            dims: header.dims,
+            world_from_voxel: header.world_from_voxel,
+        };
+        let area = Area::around(&grid);
+        let mut lines = Vec::new();
+        if let Some(degrees) = self.graticule {
+            area.add(
+                &mut lines,
+                &graticule(&projection, &area, degrees),
+                GRATICULE,
+            );
+        }
+        let mut add = |all: &Lines, look| {
+            let places = all.iter().map(|line| line.as_slice());
+            area.add(&mut lines, &projected(&projection, &area, places), look);
+        };
+        if self.borders {
+            add(&earth().borders, BORDERS);
+        }
+        if self.coast {
+            add(&earth().coast, COAST);
+        }
+        Ok(lines)
+    }
+}
+
+/// Places on the map, a line each.
+type Flat = Vec<Vec<[f64; 2]>>;
+
+/// What is seen of the ground: a rectangle of the world.
+struct Area {
+    low: [f64; 2],
+    high: [f64; 2],
+    height: f64,
+}
+
+impl Area {
+    /// The box with a margin, at its lower face.
+    fn around(grid: &Grid) -> Self {
+        let corners = (0..8).map(|i| {
+            let far = grid.far_corner();
+            let bit = |k: usize| if i >> k & 1 == 1 { far[k] } else { 0.0 };
+            grid.world_from_voxel
+                .transform_point3(DVec3::new(bit(0), bit(1), bit(2)))
+        });
+        let (low, high) = corners.fold(
+            (DVec3::INFINITY, DVec3::NEG_INFINITY),
+            |(low, high), corner| (low.min(corner), high.max(corner)),
+        );
+        let margin = MARGIN * (high - low).truncate().max_element();
+        Self {
+            low: [low.x - margin, low.y - margin],
+            high: [high.x + margin, high.y + margin],
+            height: low.z,
+        }
+    }
+
+    fn width(&self) -> f64 {
+        self.high[0] - self.low[0]
+    }
+
+    /// The parts of lines that lie in it.
+    fn add(&self, lines: &mut Vec<GroundLine>, all: &Flat, (grey, width): (f32, f64)) {
+        for line in all {
+            let mut part: Vec<DVec3> = Vec::new();
+            let mut end = |part: &mut Vec<DVec3>| {
+                let places = std::mem::take(part);
+                if places.len() > 1 {
+                    lines.push(GroundLine {
+                        places,
+                        grey,
+                        width,
+                    });
+                }
+            };
+            for pair in line.windows(2) {
+                match self.clipped(pair[0], pair[1]) {
+                    Some([a, b]) => {
+                        let [a, b] = [a, b].map(|[x, y]| DVec3::new(x, y, self.height));
+                        if part.last() != Some(&a) {
+                            end(&mut part);
+                            part.push(a);
+                        }
+                        part.push(b);
+                    }
+                    None => end(&mut part),
+                }
+            }
+            end(&mut part);
+        }
+    }
+
+    /// The part of a straight piece in the rectangle (Liang and Barsky 1984).
+    fn clipped(&self, a: [f64; 2], b: [f64; 2]) -> Option<[[f64; 2]; 2]> {
+        // A piece from one edge of the map to the other goes around the Earth.
+        if (b[0] - a[0]).abs() > 0.5 * self.width() {
+            return None;
+        }
+        let (mut from, mut to) = (0.0_f64, 1.0_f64);
+        for k in [0, 1] {
+            let way = b[k] - a[k];
+            for (distance, slope) in [(a[k] - self.low[k], -way), (self.high[k] - a[k], way)] {
+                if slope == 0.0 && distance < 0.0 {
+                    return None;
+                }
+                if slope < 0.0 {
+                    from = from.max(distance / slope);
+                } else if slope > 0.0 {
+                    to = to.min(distance / slope);
+                }
+            }
+        }
+        let at = |part: f64| match part {
+            0.0 => a,
+            1.0 => b,
+            _ => [0, 1].map(|k| a[k] + part * (b[k] - a[k])),
+        };
+        (from < to).then(|| [at(from), at(to)])
+    }
+}
+
+/// Lines of the Earth on the map; of degrees once more for each turn around the Earth that the area reaches into.
+fn projected<'a>(
+    projection: &Projection,
+    area: &Area,
+    lines: impl Iterator<Item = &'a [[f64; 2]]>,
+) -> Flat {
+    let turns: &[f64] = match projection {
+        Projection::Degrees(_) => &[-360.0, 0.0, 360.0],
+        Projection::Map { .. } => &[0.0],
+    };
+    let mut all = Vec::new();
+    for line in lines {
+        for turn in turns {
+            let mut part = Vec::new();
+            for &[longitude, latitude] in line {
+                match projection.place([longitude + turn, latitude]) {
+                    Some(place) => part.push(place),
+                    None => all.push(std::mem::take(&mut part)),
+                }
+            }
+            all.push(part);
+        }
+    }
+    all.retain(|line: &Vec<[f64; 2]>| {
+        let is_near = |k: usize, [low, high]: [f64; 2]| {
+            line.iter().any(|p| p[k] >= low) && line.iter().any(|p| p[k] <= high)
+        };
+        (0..2).all(|k| is_near(k, [area.low[k], area.high[k]]))
+    });
+    all
+}
+
+/// Meridians and parallels.
+fn graticule(projection: &Projection, area: &Area, degrees: f64) -> Flat {
+    let kilometres = (area.high[1] - area.low[1]).max(area.width());
+    let span = kilometres / 111.2;
+    let step = match degrees > 0.0 {
+        true => degrees,
+        false => STEPS
+            .into_iter()
+            .rev()
+            .find(|step| span / step >= 4.0)
+            .unwrap_or(STEPS[0]),
+    };
+    let fine = |from: f64, to: f64| {
+        let count = ((to - from) / FINE).ceil() as u32;
+        (0..=count).map(move |i| from + (to - from) * f64::from(i) / f64::from(count))
+    };
+    let mut lines: Lines = Vec::new();
+    let count = (180.0 / step).floor() as i32;
+    for i in -count..=count {
+        let longitude = f64::from(i) * step;
+        lines.push(
+            fine(-85.0, 85.0)
+                .map(|latitude| [longitude, latitude])
+                .collect(),
+        );
+    }
+    let count = (85.0 / step).floor() as i32;
+    for i in -count..=count {
+        let latitude = f64::from(i) * step;
+        lines.push(
+            fine(-180.0, 180.0)
+                .map(|longitude| [longitude, latitude])
+                .collect(),
+        );
+    }
+    projected(projection, area, lines.iter().map(Vec::as_slice))
+}
+
+impl FromStr for MapWords {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let mut words = Self::default();
+        for word in text.split(',') {
+            let (name, number) = match word.split_once('=') {
+                Some((name, number)) => (name, Some(number)),
+                None => (word, None),
+            };
+            match (name, number) {
+                ("coast", None) => words.coast = true,
+                ("borders", None) => words.borders = true,
+                ("graticule", None) => words.graticule = Some(0.0),
+                ("graticule", Some(number)) => {
+                    let degrees = number.parse().ok();
+                    let degrees = degrees.filter(|n: &f64| (0.1..=90.0).contains(n));
+                    words.graticule = Some(degrees.ok_or_else(|| {
+                        format!("graticule: wanted 0.1 to 90 degrees, found {number}")
+                    })?);
+                }
+                _ => {
+                    return Err(format!(
+                        "wanted coast, borders, graticule or graticule=DEG, found {word:?}"
+                    ));
+                }
+            }
+        }
+        Ok(words)
+    }
+}
+
+impl fmt::Display for MapWords {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let graticule = self.graticule.map(|degrees| match degrees > 0.0 {
+            true => format!("graticule={degrees}"),
+            false => "graticule".to_owned(),
+        });
+        let words = [
+            self.coast.then(|| "coast".to_owned()),
+            self.borders.then(|| "borders".to_owned()),
+            graticule,
+        ];
+        let words: Vec<String> = words.into_iter().flatten().collect();
+        f.write_str(&words.join(","))
+    }
+}
+
+impl TryFrom<String> for MapWords {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        text.parse()
+    }
+}
+
+impl From<MapWords> for String {
+    fn from(words: MapWords) -> Self {
+        words.to_string()
+    }
+}

@@ -1,0 +1,210 @@
+//! From latitude and longitude to the map that the world is drawn on.
+//!
+//! ```text
+//! degrees          x = longitude * length of a degree, y = latitude * length of a degree
+//! Mercator         x = R cos(p1) l,  y = R cos(p1) ln tan(45 + p / 2)
+//! Lambert          n = ln(cos p1 / cos p2) / ln(tan(45 + p2 / 2) / tan(45 + p1 / 2)),  n = sin p1 where p1 = p2
+//!                  r = R cos p1 / n * (tan(45 + p1 / 2) / tan(45 + p / 2))^n,  x = r sin(n l),  y = -r cos(n l)
+//! stereographic    r = R (1 + sin|p1|) cos p / (1 + sin(s p)),  x = r sin l,  y = -s r cos l,  s the sign of p1
+//! ```
+//!
+//! l the longitude from the one that runs straight north, p1 and p2 the true latitudes, on a sphere of 6370 km as WRF has it.
+//! Snyder, "Map Projections: A Working Manual", USGS Professional Paper 1395, 1987, chapters 7, 15, 21.
+
+use crate::volume::{Header, MapKind, MapProjection};
+
+/// Of a step.
+const MOST_OFF: f64 = 0.05;
+/// Kilometres.
+const RADIUS: f64 = 6370.0;
+
+/// Takes places of the Earth to the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Projection {
+    /// Lengths of a degree along x and y.
+    Degrees([f64; 2]),
+    /// A map, and what lies in the origin of the world.
+    Map {
+        kind: MapKind,
+        true_latitudes: [f64; 2],
+        longitude: f64,
+        origin: [f64; 2],
+    },
+}
+
+impl Projection {
+    /// That of a volume; `None` where it has no place on the Earth.
+    pub fn of(header: &Header) -> Option<Self> {
+        if let Some(map) = &header.map {
+            return Self::of_map(map);
+        }
+        match header.degree_lengths {
+            [Some(x), Some(y)] if header.is_earth => Some(Self::Degrees([x, y])),
+            _ => None,
+        }
+    }
+
+    fn of_map(map: &MapProjection) -> Option<Self> {
+        let first = map.true_latitudes[0]?;
+        let [latitude, longitude] = map.center?;
+        if map.kind == MapKind::LatitudeLongitude {
+            return None;
+        }
+        let unmoved = Self::Map {
+            kind: map.kind,
+            true_latitudes: [first, map.true_latitudes[1].unwrap_or(first)],
+            longitude: map.standard_longitude.unwrap_or(longitude),
+            origin: [0.0; 2],
+        };
+        let origin = unmoved.place([longitude, latitude])?;
+        match unmoved {
+            Self::Map {
+                kind,
+                true_latitudes,
+                longitude,
+                ..
+            } => Some(Self::Map {
+                kind,
+                true_latitudes,
+                longitude,
+                origin,
+            }),
+            Self::Degrees(_) => None,
+        }
+    }
+
+    /// How far a corner lies from where the latitudes of the file have it, world length, where that is more than a
+    /// twentieth of a step.
+    pub fn disagreement(&self, map: &MapProjection) -> Option<f64> {
+        let corner = map.corner?;
+        let [latitude, longitude] = corner.latitude_longitude;
+        let [x, y] = self.place([longitude, latitude])?;
+        let off = (x - corner.world[0]).hypot(y - corner.world[1]);
+        (off > MOST_OFF * corner.step).then_some(off)
+    }
+
+    /// x and y of a longitude and a latitude in degrees, world; `None` where the map has no such place.
+    pub fn place(&self, [longitude, latitude]: [f64; 2]) -> Option<[f64; 2]> {
+        let Self::Map {
+            kind,
+            true_latitudes,
+            longitude: middle,
+            origin,
+        } = *self
+        else {
+            let Self::Degrees([x, y]) = *self else {
+                return None;
+            };
+            return Some([longitude * x, latitude * y]);
+        };
+        let l = ((longitude - middle + 180.0).rem_euclid(360.0) - 180.0).to_radians();
+        let p = latitude.to_radians();
+        let [p1, p2] = true_latitudes.map(f64::to_radians);
+        let tan = |p: f64| (std::f64::consts::FRAC_PI_4 + 0.5 * p).tan();
+        let [x, y] = match kind {
+            MapKind::Mercator => {
+                let scale = RADIUS * p1.cos();
+                [scale * l, scale * tan(p).ln()]
+            }
+            MapKind::Lambert => {
+                let n = match (p1 - p2).abs() < 1e-9 {
+                    true => p1.sin(),
+                    false => (p1.cos() / p2.cos()).ln() / (tan(p2) / tan(p1)).ln(),
+                };
+                let r = RADIUS * p1.cos() / n * (tan(p1) / tan(p)).powf(n);
+                [r * (n * l).sin(), -r * (n * l).cos()]
+            }
+            MapKind::PolarStereographic => {
+                let side = p1.signum();
+                let r = RADIUS * (1.0 + p1.abs().sin()) * p.cos() / (1.0 + (side * p).sin());
+                [r * l.sin(), -side * r * l.cos()]
+            }
+            MapKind::LatitudeLongitude => return None,
+        };
+        let place = [x - origin[0], y - origin[1]];
+        // Poles of maps that have none are far away.
+        place
+            .iter()
+            .all(|n| n.is_finite() && n.abs() < 1e6)
+            .then_some(place)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::volume::MapCorner;
+
+    /// By PROJ 9 (pyproj), +R=6370000: 5 degrees to the north and 7 to the east of a place, from it, in kilometres.
+    #[test]
+    fn maps_are_those_of_proj() {
+        let north = [40.0, -90.0];
+        for (kind, true_latitudes, longitude, center, wanted) in [
+            (
+                MapKind::Lambert,
+                [30.0, 60.0],
+                -97.0,
+                north,
+                [479.750_441_100_790_06, 605.185_836_444_020_3],
+            ),
+            (
+                MapKind::Lambert,
+                [38.5, 38.5],
+                10.0,
+                north,
+                [769.665_461_935_706_4, -220.443_830_099_875_6],
+            ),
+            (
+                MapKind::PolarStereographic,
+                [60.0, 60.0],
+                -45.0,
+                north,
+                [888.093_768_654_082_9, 39.517_722_939_562_056],
+            ),
+            (
+                MapKind::PolarStereographic,
+                [-71.0, -71.0],
+                20.0,
+                [-70.0, 30.0],
+                [423.819_021_015_133_67, 475.387_277_370_811_43],
+            ),
+            (
+                MapKind::Mercator,
+                [25.0, 25.0],
+                -80.0,
+                north,
+                [705.327_068_894_086_4, 683.913_691_475_487_3],
+            ),
+        ] {
+            let map = MapProjection {
+                kind,
+                true_latitudes: true_latitudes.map(Some),
+                standard_longitude: Some(longitude),
+                center: Some(center),
+                corner: Some(MapCorner {
+                    latitude_longitude: [center[0] + 5.0, center[1] + 7.0],
+                    world: wanted,
+                    step: 10.0,
+                }),
+            };
+            let projection = Projection::of_map(&map).expect("a map");
+            let [latitude, longitude] = center;
+            assert_eq!(projection.place([longitude, latitude]), Some([0.0; 2]));
+            assert_eq!(projection.disagreement(&map), None);
+            // A kilometre to the east.
+            let mut moved = map;
+            if let Some(corner) = &mut moved.corner {
+                corner.world[0] += 1.0;
+            }
+            let off = projection.disagreement(&moved).expect("they differ");
+            assert!((off - 1.0).abs() < 1e-6, "{off}");
+            let found = projection
+                .place([longitude + 7.0, latitude + 5.0])
+                .expect("a place");
+            for k in [0, 1] {
+                // A tenth of a millimetre.
+                assert!((found[k] - wanted[k]).abs() < 1e-7, "{kind:?} {found:?}");
+            }
+        }
+    }
+}
