@@ -20,6 +20,7 @@
 //! | 1 | [`gpu`], [`volume`], [`transfer`], [`camera`], [`picture`], [`mesh`], `figure` | Vulkan objects, or data; never both |
 //! | 1 | [`points`] | scattered points, and a volume that stands for them |
 //! | 1 | [`flow`] | velocities, and lines that follow them |
+//! | 1 | [`geometry`] | opaque lines and spheres, and what a camera sees of them |
 //! | 2 | [`resident`], `isosurface`, `format` | data put on a device; a surface in a volume; bytes of files turned into a [`volume::Source`] |
 //! | 3 | [`technique`], [`resolve`], `look` | `new`, `bind`, `record`, and the CPU references; what suits a volume |
 //! | 4 | [`embed`] | a volume in a host's frames |

@@ -100,7 +100,7 @@ pub fn finish(
         settings: &view.settings,
         function: classification
             .function()
-            .filter(|_| !view.scene.flow_style.hide_volume),
+            .filter(|_| !view.scene.hides_volume()),
         lines: shown.lines().and_then(DrawnLines::legend),
         beside: parts.beside(),
         grid: shown.volume.grid(),

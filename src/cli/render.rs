@@ -54,9 +54,9 @@ pub struct Render {
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     #[command(flatten)]
-    show: ShowFlags,
-    #[command(flatten)]
     scene: SceneFlags,
+    #[command(flatten)]
+    show: ShowFlags,
     /// Flags from a file; those of the command line win
     #[arg(long = "scene", value_name = "FILE.json", help_heading = "Run")]
     scene_file: Option<PathBuf>,

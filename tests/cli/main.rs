@@ -52,6 +52,7 @@ mod presets;
 mod real;
 mod section;
 mod sheet;
+mod spheres;
 mod thumbnail_views;
 mod thumbnails;
 mod thumbnails_at_once;

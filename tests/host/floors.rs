@@ -14,7 +14,7 @@ const FLOORS: &[&[&str]] = &[
     &[
         "gpu", "volume", "transfer", "camera", "picture", "mesh", "figure",
     ],
-    &["points", "flow"],
+    &["points", "flow", "geometry"],
     &["resident", "isosurface", "format"],
     &["technique"],
     &["resolve", "look"],
@@ -43,6 +43,7 @@ const FREE_OF_VULKAN: &[&str] = &[
     "figure",
     "points",
     "flow",
+    "geometry",
     "isosurface",
     "format",
     "scene",

@@ -348,7 +348,7 @@ impl Drawing<'_> {
                 function: ready
                     .classification
                     .function()
-                    .filter(|_| !self.scene.flow_style.hide_volume),
+                    .filter(|_| !self.scene.hides_volume()),
                 lines: self.content.lines().and_then(DrawnLines::legend),
                 beside: work.parts.beside(),
                 grid: self.placed.0,

@@ -100,9 +100,9 @@ pub struct Animate {
     #[arg(long, value_name = "F", default_value = "25", help_heading = "Film")]
     fps: Rate,
     #[command(flatten)]
-    show: ShowFlags,
-    #[command(flatten)]
     scene: SceneFlags,
+    #[command(flatten)]
+    show: ShowFlags,
     /// Flags from a file; those of the command line win. A scene keeps the pictures, not the motion: --turntable,
     /// --times, --keyframes and --fps are said again
     #[arg(long = "scene", value_name = "FILE.json", help_heading = "Run")]

@@ -59,6 +59,7 @@ pub use modes::ModeFlags;
 pub use numbers::{Background, Numbers, Size, finite, positive};
 pub use opacity::OpacityFlags;
 pub use picture::PictureFlags;
+pub use points::PointLookFlags;
 pub use sampling::{Depth, SamplingFlags};
 pub use section::SectionFlags;
 pub use subject::Subject;
@@ -109,6 +110,8 @@ pub struct SceneFlags {
     #[command(flatten)]
     pub map: MapFlags,
     #[command(flatten)]
+    pub point_look: PointLookFlags,
+    #[command(flatten)]
     pub light: LightFlags,
     #[command(flatten)]
     pub gradient: GradientFlags,
@@ -140,9 +143,14 @@ impl SceneFlags {
         self.with.inline_files()
     }
 
-    /// True where lines are drawn with the volume: of the wind, or of the Earth.
+    /// True where geometry is drawn with the volume: lines of the wind or of the Earth, or points as spheres.
     pub fn has_lines(&self) -> bool {
-        self.flow.flow.is_some() || self.map.map.is_some()
+        self.flow.flow.is_some() || self.map.map.is_some() || self.points_are_spheres()
+    }
+
+    /// True where nothing of the volume is seen.
+    pub fn hides_volume(&self) -> bool {
+        self.flow_style.hide_volume || self.points_are_spheres()
     }
 
     /// What to compute, for a picture kept so exactly.

@@ -1,11 +1,39 @@
 //! Scattered points as an input.
 
+use super::numbers::positive;
 use super::{Error, InputFlags, PHANTOM, SceneFlags};
 use crate::cli::stdin::{self, STANDARD};
 use crate::format::points::{self, PointColumns, PointFile};
 use crate::technique::Technique;
 use crate::volume::Limits;
+use clap::{Args, ValueEnum};
+use serde::{Deserialize, Serialize};
 use std::path::Path;
+
+/// What stands for a scattered point.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PointsWord {
+    /// A Gaussian, as wide as its standard deviation
+    #[default]
+    Splats,
+    /// A sphere, larger where its value is
+    Spheres,
+}
+
+/// The words, none of them filled in.
+#[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct PointLookFlags {
+    /// What stands for a scattered point [default: splats]
+    #[arg(long, value_enum, value_name = "LOOK", help_heading = "Lines")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub points_as: Option<PointsWord>,
+    /// How wide the largest sphere is, in pixels where the camera is turned to [default: 14]
+    #[arg(long, value_parser = positive, value_name = "PX", help_heading = "Lines")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sphere_size: Option<f64>,
+}
 
 impl InputFlags {
     /// True where the input is scattered points.
@@ -60,9 +88,32 @@ impl InputFlags {
 }
 
 impl SceneFlags {
+    /// Whether the words say how points look where there are some.
+    pub fn check_point_look(&self) -> Result<(), Error> {
+        let look = &self.point_look;
+        if look.sphere_size.is_some() && look.points_as != Some(PointsWord::Spheres) {
+            return Err(Error::usage(
+                "--sphere-size needs --points-as spheres",
+                "leave it out",
+            ));
+        }
+        if look.points_as.is_some() && !self.input.splats_points() {
+            return Err(Error::usage(
+                "--points-as is for scattered points, and the input is a volume",
+                "leave it out",
+            ));
+        }
+        Ok(())
+    }
+
+    /// True where scattered points are spheres.
+    pub fn points_are_spheres(&self) -> bool {
+        self.point_look.points_as == Some(PointsWord::Spheres) && self.input.splats_points()
+    }
+
     /// Splatting, where the input is scattered points and no word takes another technique.
     pub fn splat_points(&mut self) {
-        if self.input.splats_points() {
+        if self.input.splats_points() && !self.points_are_spheres() {
             self.sampling.of_points = true;
             self.sampling.technique.get_or_insert(Technique::Splat);
         }

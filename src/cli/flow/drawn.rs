@@ -1,4 +1,4 @@
-//! Lines in a picture: along a wind, and of the Earth.
+//! Geometry in a picture: lines along a wind and of the Earth, points as spheres.
 //!
 //! ```text
 //! radius = width / 2 pixels where the camera is turned to
@@ -18,6 +18,7 @@ use crate::annotate::LineLegend;
 use crate::camera::Camera;
 use crate::color::decode_srgb;
 use crate::geometry::{RoundCones, Vertex};
+use crate::points::Points;
 use crate::volume::Header;
 use glam::DVec3;
 
@@ -45,10 +46,52 @@ pub struct DrawnLines {
 struct LineSet {
     lines: Vec<Vec<(DVec3, [f32; 3])>>,
     width_pixels: f64,
+    /// Of each line, where they differ: how wide it is of that.
+    shares: Option<Vec<f64>>,
     has_heads: bool,
 }
 
+/// Pixels across a sphere of the largest value, and what the smallest has of it.
+const SPHERE_PIXELS: f64 = 14.0;
+const SMALLEST: f64 = 0.3;
+
 impl DrawnLines {
+    /// Points as spheres, in the colours of their values and larger where these are; pixels across the largest.
+    pub fn spheres(points: &Points, legend: LineLegend, pixels: Option<f64>) -> Self {
+        let function = &legend.function;
+        let [low, high] = points.value_range();
+        let share = |value: f64| {
+            let part = ((value - low) / (high - low)).clamp(0.0, 1.0);
+            SMALLEST + (1.0 - SMALLEST) * if part.is_finite() { part } else { 0.5 }
+        };
+        let values = || points.values().iter().copied().map(f64::from);
+        let color = |value: f64| function.srgb(value).map(|c| decode_srgb(c as f32));
+        let places = points.places().iter();
+        let set = LineSet {
+            lines: places
+                .zip(values())
+                .map(|(&place, value)| vec![(place, color(value))])
+                .collect(),
+            width_pixels: pixels.unwrap_or(SPHERE_PIXELS),
+            shares: Some(values().map(share).collect()),
+            has_heads: false,
+        };
+        Self {
+            sets: vec![set],
+            range: [low, high],
+            seeds: Vec::new(),
+            legend: Some(legend),
+        }
+    }
+
+    /// With more lines; what colours mean is that of these first.
+    pub fn with(mut self, more: Self) -> Self {
+        self.sets.extend(more.sets);
+        self.seeds = more.seeds;
+        self.legend = self.legend.or(more.legend);
+        self
+    }
+
     /// The lines that the words name, drawn so much higher than they are, around the volume of this header; `None` where
     /// there is no word.
     pub fn of(
@@ -58,7 +101,7 @@ impl DrawnLines {
         of_film: Option<FilmTime>,
         progress: &Progress,
     ) -> Result<Option<Self>, Error> {
-        if !scene.has_lines() {
+        if scene.flow.flow.is_none() && scene.map.map.is_none() {
             return Ok(None);
         }
         let stretch = DVec3::new(1.0, 1.0, height_factor);
@@ -70,6 +113,7 @@ impl DrawnLines {
                 drawn.sets.push(LineSet {
                     lines: vec![places.collect()],
                     width_pixels: line.width,
+                    shares: None,
                     has_heads: false,
                 });
             }
@@ -128,6 +172,7 @@ impl DrawnLines {
         self.sets.push(LineSet {
             lines,
             width_pixels: style.flow_width.unwrap_or(WIDTH),
+            shares: None,
             has_heads: look == StyleWord::Arrows,
         });
         self.range = colors.range;
@@ -162,8 +207,9 @@ impl DrawnLines {
         let pixel = pixel_at_target(camera, extent_pixels);
         let mut cones = RoundCones::default();
         for set in &self.sets {
-            let radius = 0.5 * set.width_pixels * pixel;
-            for line in &set.lines {
+            let widest = 0.5 * set.width_pixels * pixel;
+            for (i, line) in set.lines.iter().enumerate() {
+                let radius = widest * set.shares.as_ref().map_or(1.0, |shares| shares[i]);
                 cones.add_line(line.iter().map(|&(place, color)| Vertex {
                     place,
                     radius,

@@ -1,4 +1,4 @@
-//! `--map coast,borders,graticule`: where the volume lies on the Earth, drawn on the ground.
+//! `--map coast,borders,graticule`: where the volume lies on the Earth, drawn at sea level.
 //!
 //! ```text
 //! margin      a fifth of the box's larger side around it
@@ -31,7 +31,7 @@ pub struct MapWords {
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct MapFlags {
-    /// Draw the Earth on the ground around the volume: coast, borders, graticule or graticule=DEG
+    /// Draw the Earth at sea level around the volume: coast, borders, graticule or graticule=DEG
     #[arg(long, value_name = "LIST", num_args = 0..=1, default_missing_value = MapWords::ALL, help_heading = "Lines")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub map: Option<MapWords>,
@@ -132,7 +132,7 @@ struct Area {
 }
 
 impl Area {
-    /// The box with a margin, at its lower face.
+    /// The box with a margin, at sea level or at the face of the box nearest to it.
     fn around(grid: &Grid) -> Self {
         let corners = (0..8).map(|i| {
             let far = grid.far_corner();
@@ -148,7 +148,7 @@ impl Area {
         Self {
             low: [low.x - margin, low.y - margin],
             high: [high.x + margin, high.y + margin],
-            height: low.z,
+            height: 0.0_f64.clamp(low.z, high.z),
         }
     }
 

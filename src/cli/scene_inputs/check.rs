@@ -94,7 +94,8 @@ fn check_lines(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
     scene.flow.check_words()?;
     let word = match scene.flow.flow {
         Some(_) => "--flow",
-        None => "--map",
+        None if scene.map.map.is_some() => "--map",
+        None => "--points-as spheres",
     };
     let refused =
         |problem: &str, hint: &str| Err(Error::usage(format!("{word} {problem}"), hint.to_owned()));
@@ -136,6 +137,7 @@ fn check_in(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
         ));
     }
     check_with(scene, mode)?;
+    scene.check_point_look()?;
     check_lines(scene, settings)?;
     scene.opacity.check()?;
     preclassified::check(scene, settings)?;

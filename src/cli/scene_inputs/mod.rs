@@ -123,7 +123,11 @@ impl SceneInputs {
         of_film: Option<FilmTime>,
         progress: &Progress,
     ) -> Result<Self, Error> {
-        self.lines = DrawnLines::of(scene, &self.header, self.height_factor, of_film, progress)?;
+        let drawn = DrawnLines::of(scene, &self.header, self.height_factor, of_film, progress)?;
+        self.lines = match (self.lines.take(), drawn) {
+            (Some(spheres), Some(lines)) => Some(spheres.with(lines)),
+            (spheres, lines) => spheres.or(lines),
+        };
         let style = &scene.flow_style;
         if style.hide_volume
             && let Classification::Function(function) = &mut self.classification
@@ -214,6 +218,9 @@ impl SceneInputs {
         check(scene, settings)?;
         if scene.sampling.of_points {
             return points::read(scene, settings.mode, progress);
+        }
+        if scene.points_are_spheres() {
+            return points::spheres(scene, settings.mode, progress);
         }
         let said = scene.is_auto().then(|| context(source.header()));
         let (plan, note) = plan(scene, source.header())?;

@@ -15,10 +15,11 @@ use crate::gpu::{
     self, Buffer, Gpu, Headless, Image, ImageDesc, ImageKind, Memory, Region, Use, buffer_to_image,
     image_barrier,
 };
+use crate::named::Named;
 use crate::offscreen::Error;
 use crate::picture::{ColorSpace, Picture};
 use crate::scene::{Scene, positions_in_pixel};
-use crate::technique::{self, InPixel, Settings};
+use crate::technique::{self, InPixel, Settings, Technique};
 use ash::vk;
 use std::sync::Arc;
 
@@ -102,9 +103,7 @@ pub fn check_geometry(settings: &Settings) -> Result<(), technique::Error> {
         })
     };
     match () {
-        () if !settings.technique.casts_rays() || settings.technique.is_warped() => {
-            refuse("this technique")
-        }
+        () if settings.technique != Technique::Raycast => refuse(settings.technique.name()),
         () if settings.uneven_rays => refuse("rays at uneven places"),
         () => Ok(()),
     }
