@@ -502,6 +502,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         &[SHEETS, constant("mode", &["mip", "minip", "sum"]), HOLES],
     ),
     ("splat_points", &[TRANSFER]),
+    ("pathtrace", &[NARROW, HOLES, TRANSFER]),
     (
         "splat_points_projection",
         &[constant("mode", &["mip", "minip", "sum"])],

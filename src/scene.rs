@@ -6,8 +6,9 @@ pub(crate) use labels_over::LabelsOver;
 
 use crate::camera::Camera;
 use crate::points::Points;
-use crate::shaders::MAX_CHANNELS;
+use crate::shaders::{Frame, MAX_CHANNELS};
 use crate::technique::mixture::opacities_have_colors;
+use crate::technique::pathtrace::Medium;
 use crate::technique::splat::points::reference_length;
 use crate::technique::{
     CutFaces, Error, GradientStorage, InPixel, Mode, Role, SampleInputs, Settings, View,
@@ -175,6 +176,9 @@ impl<'a> Scene<'a> {
         self.settings.check_splatted(are_several, is_classified)?;
         self.settings
             .check_points(matches!(self.beside, Beside::Points(_)))?;
+        let is_one =
+            self.mix() == SampleInputs::Scalar && !matches!(self.beside, Beside::Points(_));
+        self.settings.check_path_volume(is_one, 1)?;
         if self.uses_gradient() {
             self.settings.check_graded()?;
         }
@@ -270,6 +274,20 @@ impl<'a> Scene<'a> {
         function
             .reference_length
             .unwrap_or_else(|| self.default_length())
+    }
+
+    /// Tells the parameters what paths want to know of the volume and its function.
+    pub(crate) fn tell_paths(&self, frame: &mut Frame) {
+        let (true, Some(function)) = (self.settings.technique.traces_paths(), self.transfer) else {
+            return;
+        };
+        let medium = Medium {
+            function,
+            reference_length: self.length_of(function),
+            value_range: self.volume.value_range,
+            smallest_spacing: self.volume.grid().smallest_spacing(),
+        };
+        self.settings.path.tell(&medium, frame);
     }
 
     /// Between which values samples look alike, where steps adapt to that.

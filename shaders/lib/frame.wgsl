@@ -11,6 +11,10 @@ const MAX_CHANNELS: u32 = 4u;
 const CHANNEL_ROWS: u32 = 12u;
 const MAX_LIGHTS: u32 = 4u;
 const MAX_LEVELS: u32 = 8u;
+// Bins of values, and rows with the largest extinctions of 1, 2, 4, .. of them beside each other.
+const MAJORANT_BINS: u32 = 64u;
+const MAJORANT_ROWS: u32 = 7u;
+const MAJORANT_VECTORS: u32 = 112u;
 
 struct Frame {
     // Beside vectors stand the numbers that fragments of slices ask for (`shaders/flat_varyings.rs`).
@@ -220,6 +224,31 @@ struct Frame {
     // Scattered points: which of the list of a tile this recording takes.
     points_first: u32,
     points_end: u32,
+    // Path tracing: the first path of each pixel in this recording, how many, which random numbers they have, and how often
+    // they may be scattered.
+    path_first: u32,
+    path_count: u32,
+    path_seed: u32,
+    path_bounces: u32,
+    // From all around, as light of lights is given.
+    path_sky: vec3<f32>,
+    // Per world length, times density: no extinction is larger.
+    path_majorant: f32,
+    // The phase function: see phase.wgsl.
+    path_phase: vec4<f32>,
+    // What extinctions and colours are multiplied by.
+    path_density: f32,
+    path_albedo: f32,
+    // A collision at gradient g (value per world length) is one with a surface by the chance 1 - exp(-path_surface g).
+    path_surface: f32,
+    // 1 - cosine of half the angle that a light is wide.
+    path_light_size: f32,
+    // Paths of more turns end by chance.
+    path_turns: u32,
+    // Bin (value - first) * scale; row r holds at i the largest of the bins i to i + 2^r - 1, times density.
+    path_bin_first: f32,
+    path_bin_scale: f32,
+    path_majorants: array<vec4<f32>, MAJORANT_VECTORS>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

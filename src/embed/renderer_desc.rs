@@ -106,6 +106,11 @@ impl RendererDesc {
                 "draw their picture by `offscreen::Renderer`",
             ),
             (
+                settings.technique.traces_paths(),
+                "path tracing",
+                "draw its picture by `offscreen::Renderer`",
+            ),
+            (
                 settings.wants_light_volume(),
                 "a picture with a light volume (shadows, ambient occlusion)",
                 "take `technique::LightVolume` and record it",

@@ -216,6 +216,7 @@ impl<'a, R: Real> ReferenceRays<'a, R> {
         frame.channel_gradient_scale = view.gradient_scales(ranges.zip(scene.roles()));
         frame.flat_gradient = view.flat_gradient(scene.volume.value_range);
         frame.reference_length = scene.reference_length() as f32;
+        scene.tell_paths(&mut frame);
         Ok(Self {
             scene,
             volumes: read.map_or_else(|| scene.volumes(), |read| vec![read]),

@@ -14,6 +14,7 @@ mod filtered;
 mod gather;
 mod kept;
 mod pacing;
+mod paths;
 mod readback;
 mod skipping;
 mod streaming;
@@ -318,7 +319,8 @@ impl<'v> Renderer<'v> {
         layers: &[LayerKind],
         clock: &mut Clock,
     ) -> Result<Picture, Error> {
-        self.passes_done = [0, passes_of(scene, !layers.is_empty())];
+        let most_turns = self.device.gpu().limits().max_loop_turns;
+        self.passes_done = [0, passes_of(scene, !layers.is_empty(), most_turns)];
         self.prepare(scene, !layers.is_empty())?;
         self.prepare_skip(scene)?;
         let functions = scene.transfers().into_iter();
@@ -337,18 +339,11 @@ impl<'v> Renderer<'v> {
             }
             None => return Err(technique::Error::NoTransferFunction.into()),
         }
+        let pixels = match scene.settings.technique.traces_paths() {
+            true => self.mean_of_paths(scene, clock)?,
+            false => self.mean_of_rays(scene, clock)?,
+        };
         let per_side = scene.settings.rays_per_side;
-        let mut mean = Mean::new(per_side);
-        for in_pixel in positions_in_pixel(scene.settings) {
-            self.look_behind(scene, in_pixel)?;
-            let (mut colors, gpu_ms) = self.colors(scene, in_pixel)?;
-            clock.add(gpu_ms);
-            if let (Some(behind), false) = (&self.behind, scene.settings.mode.is_projection()) {
-                behind.put(&mut colors, scene.settings);
-            }
-            mean.add(colors);
-        }
-        let pixels = mean.pixels;
         if per_side > 1 && !layers.is_empty() {
             self.look_behind(scene, InPixel::CENTER)?;
             clock.add(self.gather(scene, InPixel::CENTER)?);
@@ -363,6 +358,21 @@ impl<'v> Renderer<'v> {
             color_space,
             layers,
         })
+    }
+
+    /// The mean of the rays of each pixel, before what lies behind them.
+    fn mean_of_rays(&mut self, scene: &Scene, clock: &mut Clock) -> Result<Vec<[f32; 4]>, Error> {
+        let mut mean = Mean::new(scene.settings.rays_per_side);
+        for in_pixel in positions_in_pixel(scene.settings) {
+            self.look_behind(scene, in_pixel)?;
+            let (mut colors, gpu_ms) = self.colors(scene, in_pixel)?;
+            clock.add(gpu_ms);
+            if let (Some(behind), false) = (&self.behind, scene.settings.mode.is_projection()) {
+                behind.put(&mut colors, scene.settings);
+            }
+            mean.add(colors);
+        }
+        Ok(mean.pixels)
     }
 
     /// Pipelines and targets for the picture.

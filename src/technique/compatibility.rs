@@ -13,6 +13,7 @@ impl Settings {
     /// [`Error::NotFor`], [`Error::SeveralShadowLights`], and [`Error::OutOfRange`] for a window that is none.
     pub fn check_ways(&self) -> Result<(), Error> {
         self.check_splats()?;
+        self.check_paths()?;
         let (mode, technique) = (self.mode, self.technique);
         let desc = technique.desc();
         let of_mode = |is_on: bool, wanted| {

@@ -90,7 +90,13 @@ fn length_inside([low, high]: [DVec3; 2], origin: DVec3, direction: DVec3) -> f6
 /// Some twenty voxels of a slice, each with its part in some five sheets.
 const FETCHES_OF_SHEET: f64 = 60.0;
 
+/// Of a path, for each voxel that its ray would meet: it goes there and back some times.
+const FETCHES_OF_PATH: f64 = 4.0;
+
 fn fetches_of_sample(settings: &Settings) -> f64 {
+    if settings.technique.traces_paths() {
+        return FETCHES_OF_PATH * f64::from(settings.path.samples);
+    }
     if settings.technique.splats() {
         return FETCHES_OF_SHEET;
     }

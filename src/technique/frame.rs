@@ -203,6 +203,9 @@ impl View<'_> {
             let camera = self.camera.frame();
             set_shading(shading, &camera, self.settings.color_space, &mut fields)?;
         }
+        if self.settings.technique.traces_paths() {
+            self.set_paths(&mut fields)?;
+        }
         Ok(fields)
     }
 

@@ -35,6 +35,8 @@ impl Settings {
         let (technique, mode) = (self.technique, self.mode);
         let is_sum = are_several && mode.is_projection();
         match layer {
+            // Of many paths in a pixel none is the one.
+            _ if technique.traces_paths() && layer != Annotation => Some(Lack::Rays),
             Value | Depth | Position | Normal | Label if is_sum => Some(Lack::OneNumber),
             Value => (!mode.has_value()).then_some(Lack::OneValue),
             Transmittance => mode.is_projection().then_some(Lack::Transmittance),

@@ -108,8 +108,9 @@ impl View<'_> {
         functions: Functions,
         max_loop_turns: u32,
     ) -> Result<(), Error> {
-        // Of a slicer every invocation takes one sample.
-        if !self.settings.technique.casts_rays() {
+        // Of a slicer every invocation takes one sample, and paths end by themselves.
+        let technique = self.settings.technique;
+        if !technique.casts_rays() || technique.traces_paths() {
             return Ok(());
         }
         if self.settings.technique.splats() && max_loop_turns != u32::MAX {

@@ -48,6 +48,7 @@ mod names;
 pub mod own_grid;
 mod patch_slicer;
 mod patches;
+pub mod pathtrace;
 mod per_mode;
 #[doc(hidden)]
 pub mod preclassified;
@@ -116,6 +117,8 @@ pub enum Technique {
     ShearWarp,
     /// Every voxel is a Gaussian, of which rays take the integral.
     Splat,
+    /// Random paths of light that scatters in a medium.
+    Pathtrace,
 }
 
 /// How a value between voxel centres is made.
@@ -279,6 +282,8 @@ pub struct Settings {
     pub dim: f64,
     /// What splats are.
     pub splat: splat::Splat,
+    /// What paths are.
+    pub path: pathtrace::PathTracing,
 }
 
 /// Faint, and still seen.
@@ -330,6 +335,7 @@ impl Default for Settings {
             per_mode: PerMode::default(),
             dim: DEFAULT_DIM,
             splat: splat::Splat::default(),
+            path: pathtrace::PathTracing::default(),
         }
     }
 }

@@ -123,6 +123,7 @@ impl View<'_> {
         let bricks = volume.bricks();
         self.check_slabs(bricks.len())?;
         self.settings.check_bricks(bricks.len())?;
+        self.settings.check_path_volume(true, bricks.len())?;
         if self.settings.is_half_angle() {
             if parts.len() > 1 {
                 return Err(Error::NotShadedTogether.into());

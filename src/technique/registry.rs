@@ -4,7 +4,8 @@ use super::gather::{Gather, GatherDesc};
 use super::reference::{Gathered, Samples};
 use super::shear_warp::BasePlane;
 use super::{
-    Error, Settings, Technique, View, projection, raycast, shear_warp, slices_2d, slices_3d, splat,
+    Error, Settings, Technique, View, pathtrace, projection, raycast, shear_warp, slices_2d,
+    slices_3d, splat,
 };
 use crate::gpu;
 use crate::named::named;
@@ -19,6 +20,7 @@ named!(Technique {
     Slices2d "slices-2d" "",
     ShearWarp "shear-warp" "",
     Splat "splat" "",
+    Pathtrace "pathtrace" "",
 });
 
 /// The base plane of a view.
@@ -34,6 +36,8 @@ pub(crate) struct TechniqueDesc {
     pub draws_stacks: bool,
     /// Rays take integrals of Gaussians, and no samples.
     pub splats: bool,
+    /// Each pixel is the mean of random paths, of which pictures of parts add up to that of all.
+    pub traces_paths: bool,
     /// A volume may come brick by brick from its file.
     pub streams: bool,
     /// Refuses what it has no passes for.
@@ -78,6 +82,7 @@ impl Technique {
             Self::Slices2d => &slices_2d::DESC,
             Self::ShearWarp => &shear_warp::DESC,
             Self::Splat => &splat::DESC,
+            Self::Pathtrace => &pathtrace::DESC,
         }
     }
 
@@ -103,6 +108,11 @@ impl Technique {
         self.desc().splats
     }
 
+    /// [`TechniqueDesc::traces_paths`].
+    pub(crate) fn traces_paths(self) -> bool {
+        self.desc().traces_paths
+    }
+
     /// [`TechniqueDesc::streams`].
     pub(crate) fn streams(self) -> bool {
         self.desc().streams
@@ -115,7 +125,7 @@ impl Technique {
 
     /// Whether a pixel has a ray of its own, with a place where it ends.
     pub(crate) fn has_depth(self) -> bool {
-        self.casts_rays() && !self.is_warped()
+        self.casts_rays() && !self.is_warped() && !self.traces_paths()
     }
 
     /// What its CPU reference gathers for one pixel, of all modes but surfaces.
@@ -132,6 +142,7 @@ impl Technique {
                 shear_warp::reference::pixel(of, pixel, |base| Self::Raycast.pixel(of, base))
             }
             Self::Splat => splat::reference::pixel(of, pixel),
+            Self::Pathtrace => pathtrace::reference::pixel(of, pixel),
         }
     }
 }

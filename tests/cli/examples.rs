@@ -296,6 +296,15 @@ fn every_command_of_the_page_of_weather_runs() {
     }
 }
 
+#[test]
+fn every_command_of_the_page_of_path_tracing_runs() {
+    let (folder, _, lines) = run_page("docs/pathtrace.md");
+    assert_eq!(lines, 3);
+    for name in ["head.png", "lit.png", "once.png"] {
+        assert!(folder.path(name).exists(), "{name}");
+    }
+}
+
 /// The page shows the file and what is printed of it.
 #[test]
 fn the_drawing_of_the_page_of_structure_has_the_addresses_that_are_shown() {

@@ -32,6 +32,7 @@ mod modes_along_rays;
 mod mutants;
 mod normals;
 mod occlusion;
+mod pathtrace;
 mod quality;
 mod references;
 mod shapes;

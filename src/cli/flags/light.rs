@@ -46,7 +46,7 @@ pub struct LightFlags {
     #[arg(long, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shadows: Option<ShadowsWord>,
-    /// How wide lights look, in degrees: 0 for sharp shadows [default: 5]
+    /// How wide lights look, in degrees: 0 for sharp shadows [default: 5; 0 with --technique pathtrace]
     #[arg(long, value_name = "DEGREES", value_parser = finite, allow_hyphen_values = true, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub light_size: Option<f64>,
@@ -66,6 +66,13 @@ pub enum ShadingWord {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct LightWord(Light);
+
+impl LightWord {
+    /// The light.
+    pub fn light(self) -> Light {
+        self.0
+    }
+}
 
 impl FromStr for LightWord {
     type Err = String;

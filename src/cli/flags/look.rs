@@ -1,8 +1,8 @@
 //! `--look`: which defaults hold where no flag says otherwise.
 
-use super::SceneFlags;
+use super::{LightWord, Numbers, SceneFlags};
 use crate::cli::progress::Progress;
-use crate::technique::Mode;
+use crate::technique::{Mode, Technique};
 use crate::volume::Header;
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
@@ -15,13 +15,15 @@ pub enum Look {
     Auto,
     /// The whole box at zoom 1, without light, one sample a voxel, transparent
     Plain,
+    /// As auto, by path tracing: surfaces under a wide light and an even sky, with soft shadows
+    Cinematic,
 }
 
 impl SceneFlags {
     /// True under `--look auto`. Nothing said is `plain`: a verb whose default is `auto` says so first, by
     /// [`Self::default_to_auto`].
     pub fn is_auto(&self) -> bool {
-        self.look == Some(Look::Auto)
+        matches!(self.look, Some(Look::Auto | Look::Cinematic))
     }
 
     /// Takes the first of several variables, and says so, where the look may choose and no flag does.
@@ -45,6 +47,7 @@ impl SceneFlags {
     /// Scattered points are splatted, whatever the look is.
     pub fn default_to_auto(&mut self) {
         self.splat_points();
+        self.set_cinematic();
         self.look.get_or_insert(match self.sampling.conformance {
             true => Look::Plain,
             false => Look::Auto,
@@ -54,4 +57,32 @@ impl SceneFlags {
             self.sampling.aa.get_or_insert(4);
         }
     }
+
+    /// The flags that `--look cinematic` stands for; those that are given stay.
+    fn set_cinematic(&mut self) {
+        if self.look != Some(Look::Cinematic) {
+            return;
+        }
+        self.sampling.technique.get_or_insert(Technique::Pathtrace);
+        if !self.traces_paths() {
+            return;
+        }
+        let path = &mut self.path;
+        path.environment.get_or_insert(Numbers([SKY; 3]));
+        path.surface_scattering.get_or_insert(SURFACE);
+        path.density_scale.get_or_insert(DENSITY);
+        if self.light.light.is_empty() {
+            self.light
+                .light
+                .push(LightWord::of_camera(KEY_LIGHT.into()));
+        }
+        self.light.light_size.get_or_insert(KEY_LIGHT_DEGREES);
+    }
 }
+
+/// Of `--look cinematic`: from 45 degrees left of the eye and 40 degrees above it.
+const KEY_LIGHT: [f64; 3] = [-0.54, 0.64, 0.54];
+const KEY_LIGHT_DEGREES: f64 = 40.0;
+const SKY: f64 = 0.35;
+const SURFACE: f64 = 8.0;
+const DENSITY: f64 = 0.5;

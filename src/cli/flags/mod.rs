@@ -26,6 +26,7 @@ mod modes;
 mod numbers;
 mod occlusion;
 mod opacity;
+mod paths;
 mod picture;
 mod points;
 mod sampling;
@@ -58,6 +59,7 @@ pub use look::Look;
 pub use modes::ModeFlags;
 pub use numbers::{Background, Numbers, Size, finite, positive};
 pub use opacity::OpacityFlags;
+pub use paths::PathFlags;
 pub use picture::PictureFlags;
 pub use points::PointLookFlags;
 pub use sampling::{Depth, SamplingFlags};
@@ -114,6 +116,8 @@ pub struct SceneFlags {
     #[command(flatten)]
     pub light: LightFlags,
     #[command(flatten)]
+    pub path: PathFlags,
+    #[command(flatten)]
     pub gradient: GradientFlags,
     #[command(flatten)]
     pub camera: CameraFlags,
@@ -148,6 +152,12 @@ impl SceneFlags {
         self.flow.flow.is_some() || self.map.map.is_some() || self.points_are_spheres()
     }
 
+    /// True where pixels are means of random paths.
+    pub fn traces_paths(&self) -> bool {
+        let technique = self.sampling.technique;
+        technique.is_some_and(|technique| technique.traces_paths())
+    }
+
     /// True where nothing of the volume is seen.
     pub fn hides_volume(&self) -> bool {
         self.flow_style.hide_volume || self.points_are_spheres()
@@ -175,6 +185,7 @@ impl SceneFlags {
             gradient_filter: self.gradient.filter(),
             gradient_storage: self.gradient.keep(),
             dim: self.labels.dim()?,
+            path: self.path.path(&self.light),
             ..settings
         };
         sampling::check_ways(&settings)?;
@@ -211,10 +222,14 @@ impl SceneFlags {
     /// Flags that change nothing under the others, a sentence each.
     pub fn idle(&self) -> Vec<&'static str> {
         let mode = self.sampling.mode.unwrap_or_default();
+        let of_light = match self.traces_paths() {
+            true => Vec::new(),
+            false => [self.light.idle(mode), self.path.idle()].concat(),
+        };
         let topics = [
             self.sampling.idle(),
             self.modes.idle(mode),
-            self.light.idle(mode),
+            of_light,
             self.gradient.idle(self.may_have_gradients()),
             self.camera.idle(self.section.section.is_some()),
             self.annotate.idle(),

@@ -180,12 +180,17 @@ const WARP: &str = "--technique shear-warp is for --mode composite, mip, minip, 
 const SPLATS: &str = "--technique splat is for --mode composite, mip, minip, average and xray, with a kernel (--splat-std) and \
                       sheets (--sheets) of its own: leave out the other flag, or take --technique raycast";
 
+/// What paths go with.
+const PATHS: &str = "--technique pathtrace is for --mode composite of one volume of numbers, by --filter linear and nearest, with lights \
+                     (--light, --environment) that need no --shading: leave out the other flag";
+
 /// Whether settings have the ways to sample that are asked for.
 pub fn check_ways(settings: &Settings) -> Result<(), Error> {
     let hint = match settings.lattice {
         _ if settings.is_half_angle() => HALF_ANGLE,
         _ if settings.technique.is_warped() => WARP,
         _ if settings.technique.splats() => SPLATS,
+        _ if settings.technique.traces_paths() => PATHS,
         Lattice::Bresenham => MAIN_AXIS,
         _ => WAYS,
     };
@@ -235,6 +240,7 @@ impl SamplingFlags {
             gradient_storage: Default::default(),
             dim: DEFAULT_DIM,
             splat: self.splat(depth),
+            path: Default::default(),
             ambient_occlusion: None,
             conformance: self.conformance,
             // Of the values, which are not known yet.
@@ -292,7 +298,8 @@ impl SamplingFlags {
 
     /// True where samples lie at steps that --samples-per-voxel sets: not on the slices of plain 2D stacks.
     pub fn has_steps(&self) -> bool {
-        self.smooth || !self.technique.unwrap_or_default().draws_stacks()
+        let technique = self.technique.unwrap_or_default();
+        self.smooth || !(technique.draws_stacks() || technique.traces_paths())
     }
 
     /// True where a word says what is classified.

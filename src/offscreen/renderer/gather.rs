@@ -84,6 +84,7 @@ impl Renderer<'_> {
             .and_then(|behind| behind.depth(scene.camera));
         for recording in &mut recordings {
             recording.skip(skip);
+            scene.tell_paths(&mut recording.frame);
             if let Some((depth, _)) = &behind {
                 recording.behind(depth, grid.center());
             }

@@ -1,9 +1,11 @@
 //! How long the next picture will take, by what the last one took.
 
 use super::Renderer;
+use super::paths::paths_at_once;
 use crate::offscreen::time_slices::Spent;
 use crate::scene::Scene;
 use crate::technique::cost::{fetches_of_picture, ms_of_fetches};
+use crate::technique::pathtrace::PathTracing;
 use crate::technique::{Jitter, Recording, Settings, Skip, View};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -79,6 +81,10 @@ impl<'v> Renderer<'v> {
         let like = Like {
             settings: Settings {
                 jitter: Jitter::default(),
+                path: PathTracing {
+                    first_sample: 0,
+                    ..scene.settings.path.clone()
+                },
                 ..scene.settings.clone()
             },
             shown: self.shown,
@@ -114,9 +120,16 @@ impl<'v> Renderer<'v> {
 }
 
 /// How many passes over all samples a picture takes, of each of its volumes that are drawn one by one.
-pub fn passes_of(scene: &Scene, has_layers: bool) -> usize {
+pub fn passes_of(scene: &Scene, has_layers: bool, max_loop_turns: u32) -> usize {
     let settings = scene.settings;
-    let rays = settings.rays_per_side.pow(2) as usize;
+    let rays = match settings.technique.traces_paths() {
+        true => settings
+            .path
+            .samples
+            .div_ceil(paths_at_once(max_loop_turns)),
+        false => settings.rays_per_side.pow(2),
+    };
+    let rays = rays as usize;
     let is_grey = settings.mode.is_projection() && scene.transfers().iter().any(Option::is_none);
     // Layers are those of the rays through pixel centres, and slicers count samples by themselves.
     let is_drawn_again = has_layers && settings.rays_per_side > 1;

@@ -18,6 +18,7 @@ pub(super) static DESC: TechniqueDesc = TechniqueDesc {
     casts_rays: true,
     draws_stacks: false,
     splats: false,
+    traces_paths: false,
     streams: true,
     supports: |_| Ok(()),
     has_half_angle: false,

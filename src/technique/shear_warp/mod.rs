@@ -42,6 +42,7 @@ pub(super) static DESC: TechniqueDesc = TechniqueDesc {
     casts_rays: true,
     draws_stacks: false,
     splats: false,
+    traces_paths: false,
     streams: false,
     supports,
     has_half_angle: false,

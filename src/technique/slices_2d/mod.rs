@@ -20,6 +20,7 @@ pub(super) static DESC: TechniqueDesc = TechniqueDesc {
     casts_rays: false,
     draws_stacks: true,
     splats: false,
+    traces_paths: false,
     streams: false,
     supports: slicer_supports,
     has_half_angle: false,

@@ -89,6 +89,7 @@ pub(super) static DESC: TechniqueDesc = TechniqueDesc {
     casts_rays: true,
     draws_stacks: false,
     splats: true,
+    traces_paths: false,
     streams: false,
     // `Settings::check_splats` refuses by name.
     supports: |_| Ok(()),

@@ -1,0 +1,254 @@
+// Path tracing of a medium with surfaces (Kajiya and Von Herzen 1984; Kajiya 1986). Of one path, from the eye on:
+//
+//     tentative collisions  t += -ln(1 - u) / majorant           (null collisions, Woodcock et al. 1965)
+//     one is real with      P = extinction / majorant            W *= albedo
+//     light                 L += W p(c) E T                      T: product of 1 - P along the way (ratio tracking, Novak et al. 2014)
+//     it leaves             L += W sky
+//
+// The picture is the mean over paths. One loop over events: lanes that have ended a path go on with the next.
+// CPU reference: src/technique/pathtrace/reference.rs.
+
+#import ray
+#import drawn_tile
+#import filter_{filter}
+#import mask
+#import holes_{holes}
+#import transfer_{transfer}
+#import distance_map
+#import majorants
+#import random
+#import elementary
+#import phase
+
+// Mean radiance of paths, and which part of them has met matter.
+@group(0) @binding(6) var picture: texture_storage_2d<rgba32float, read_write>;
+
+// What an invocation is at.
+const NEXT: u32 = 0u;
+const PATH: u32 = 1u;
+const SHADOW: u32 = 2u;
+const SCATTER: u32 = 3u;
+
+// Draws of a collision, and of the direction behind it.
+const OF_COLLISION: u32 = 0x40000000u;
+const OF_DIRECTION: u32 = 0x80000000u;
+
+// Behind so many bounces, weights under LEAST end by chance.
+const FEWEST_BOUNCES: u32 = 4u;
+const LEAST: f32 = 0.1;
+
+struct Walk {
+    world: Ray,
+    voxel: Ray,
+    t: f32,
+    end: f32,
+    // Of the collision that it is at.
+    majorant: f32,
+}
+
+struct Path {
+    weight: vec3<f32>,
+    radiance: vec3<f32>,
+    bounces: u32,
+    // Turns so far: the number of the next draw.
+    draw: u32,
+    has_met: bool,
+}
+
+// Where a path has met matter, while its light is looked for.
+struct Collision {
+    place: vec3<f32>,
+    direction: vec3<f32>,
+    // 0: in the medium.
+    normal: vec3<f32>,
+    // What arrives if nothing is in the way, and the part of it that does.
+    light: vec3<f32>,
+    through: f32,
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) own: vec3<u32>) {
+    let pixel = pixel_in(drawn_tile(group), own.xy);
+    if any(pixel >= frame.extent_pixels) {
+        return;
+    }
+    let number = pixel.y * frame.extent_pixels.x + pixel.x;
+    let end = frame.path_first + frame.path_count;
+    var sum = vec4(0.0);
+    var sample = frame.path_first;
+    var key = vec4(number, 0u, 0u, frame.path_seed);
+    var state = NEXT;
+    var path: Path;
+    var walk: Walk;
+    var at: Collision;
+    loop {
+        if state == NEXT {
+            if sample == end {
+                break;
+            }
+            key.y = sample;
+            key.z = 0u;
+            sample++;
+            walk = walk_along(pixel_ray(vec2<f32>(pixel) + random_numbers(key).xy));
+            path = Path(vec3(1.0), vec3(0.0), 0u, 1u, false);
+            state = PATH;
+        }
+        key.z = path.draw;
+        path.draw++;
+        let u = random_numbers(key);
+        let is_tentative = step_by(&walk, u.x);
+        var chance = 0.0;
+        var color = vec3(0.0);
+        let place = walk.voxel.origin + walk.t * walk.voxel.direction;
+        if is_tentative && volume_is_valid(footprint_of(place)) {
+            let matter = classify(volume_value(place));
+            chance = min(matter.extinction * frame.path_density / walk.majorant, 1.0);
+            color = matter.color;
+        }
+        let has_left = !is_tentative && walk.t >= walk.end;
+        if state == SHADOW {
+            at.through *= 1.0 - chance;
+            if at.through < LEAST {
+                at.through = select(0.0, LEAST, u.y * LEAST < at.through);
+            }
+            if has_left || at.through == 0.0 {
+                path.radiance += path.weight * at.light * at.through;
+                state = SCATTER;
+            }
+        } else if has_left {
+            path.radiance += select(vec3(0.0), path.weight * frame.path_sky, path.has_met);
+            state = NEXT;
+        } else if u.y < chance {
+            path.has_met = true;
+            if frame.path_bounces == 0u {
+                path.radiance = color;
+            }
+            if path.bounces == frame.path_bounces {
+                state = NEXT;
+            } else {
+                path.weight *= color * frame.path_albedo;
+                key.z |= OF_COLLISION;
+                let numbers = random_numbers(key);
+                at = Collision(walk.world.origin + walk.t * walk.world.direction, walk.world.direction, vec3(0.0), vec3(0.0), 1.0);
+                at.normal = normal_at(place, at.direction, numbers.x);
+                let to_light = light_at(&at, numbers);
+                state = SCATTER;
+                if any(path.weight * at.light > vec3(0.0)) {
+                    walk = walk_along(Ray(at.place, to_light));
+                    state = SHADOW;
+                }
+            }
+        }
+        if state == SCATTER {
+            key.z = path.draw | OF_DIRECTION;
+            let numbers = random_numbers(key);
+            path.bounces++;
+            path.weight *= kept(path, numbers.x);
+            walk = walk_along(Ray(at.place, scattered(at, numbers)));
+            state = select(NEXT, PATH, any(path.weight > vec3(0.0)));
+        }
+        if state == NEXT {
+            sum += vec4(path.radiance, f32(path.has_met));
+        }
+    }
+    textureStore(picture, pixel, sum / f32(frame.path_count));
+}
+
+// The part of a ray that lies in the domain.
+fn walk_along(world: Ray) -> Walk {
+    let voxel = voxel_ray(world);
+    let interval = domain_interval(world, voxel);
+    return Walk(world, voxel, interval.x, interval.y, frame.path_majorant);
+}
+
+// On to the next tentative collision, or to where the next cell begins or the domain ends. Distances of collisions have no
+// memory: in each piece of a ray they are drawn anew.
+fn step_by(walk: ptr<function, Walk>, u: f32) -> bool {
+    let voxel = (*walk).voxel;
+    var reach = (*walk).end;
+    if frame.cells.x != 0u {
+        let in_cells = (voxel.origin + (*walk).t * voxel.direction - frame.cells_origin) / f32(CELL_VOXELS);
+        let cell = vec3<i32>(clamp(in_cells, vec3(0.0), vec3<f32>(frame.cells) - 1.0));
+        let distance = distance_to_occupied(cell);
+        let radius = max(distance, 1);
+        let tiny = vec3(1e-20);
+        let along = select(voxel.direction, tiny, abs(voxel.direction) < tiny);
+        let planes = vec3<f32>(cell + select(vec3(1 - radius), vec3(radius), along > vec3(0.0)));
+        let leaves = (planes * f32(CELL_VOXELS) + frame.cells_origin - voxel.origin) / along;
+        let leave = min(leaves.x, min(leaves.y, leaves.z));
+        // A little beyond, so that rounding leaves no ray where it is.
+        reach = min(reach, max(leave, (*walk).t) + frame.smallest_spacing / 1024.0);
+        (*walk).majorant = select(majorant_of(cell), 0.0, distance > 0);
+    }
+    if (*walk).majorant <= 0.0 {
+        (*walk).t = reach;
+        return false;
+    }
+    let t = (*walk).t + minus_ln(1.0 - u) / (*walk).majorant;
+    (*walk).t = min(t, reach);
+    return t < reach;
+}
+
+// The normal of a surface at a collision, on the side that the path comes from; 0: it is one in the medium.
+fn normal_at(place: vec3<f32>, direction: vec3<f32>, u: f32) -> vec3<f32> {
+    if frame.path_surface == 0.0 {
+        return vec3(0.0);
+    }
+    let x = vec3(1.0, 0.0, 0.0);
+    let y = vec3(0.0, 1.0, 0.0);
+    let z = vec3(0.0, 0.0, 1.0);
+    let slope = 0.5 * vec3(
+        volume_value(place + x) - volume_value(place - x),
+        volume_value(place + y) - volume_value(place - y),
+        volume_value(place + z) - volume_value(place - z),
+    );
+    let gradient = (frame.voxel_from_world * slope).xyz;
+    let steepness = length(gradient);
+    if steepness <= frame.flat_gradient || u >= 1.0 - exp(-frame.path_surface * steepness) {
+        return vec3(0.0);
+    }
+    let normal = gradient / steepness;
+    return select(normal, -normal, dot(normal, direction) > 0.0);
+}
+
+// One of the lights: the way to it, and in `light` what it gives if nothing is in the way. A light of colour 1 gives a white
+// surface across its way radiance 1: irradiance pi.
+fn light_at(at: ptr<function, Collision>, numbers: vec4<f32>) -> vec3<f32> {
+    if frame.light_count == 0u {
+        return vec3(0.0);
+    }
+    let count = f32(frame.light_count);
+    let i = min(u32(numbers.y * count), frame.light_count - 1u);
+    let axis = frame.light_directions[i].xyz;
+    let way = around(axis, 1.0 - numbers.z * frame.path_light_size, numbers.w);
+    var part = PI * phase_value(dot((*at).direction, way));
+    if any((*at).normal != vec3(0.0)) {
+        part = max(dot((*at).normal, way), 0.0);
+    }
+    (*at).light = count * part * frame.light_colors[i].xyz;
+    return way;
+}
+
+// Where the path goes on: by the phase function, or by the cosine to the normal of a surface (Lambert).
+fn scattered(at: Collision, numbers: vec4<f32>) -> vec3<f32> {
+    if any(at.normal != vec3(0.0)) {
+        return around(at.normal, sqrt(1.0 - numbers.z), numbers.w);
+    }
+    return around(at.direction, phase_cosine(numbers.y, numbers.z), numbers.w);
+}
+
+// Roulette: what the weight is multiplied by, 0 where the path ends. Paths of very many turns end by chance too.
+fn kept(path: Path, u: f32) -> f32 {
+    let most = max(path.weight.x, max(path.weight.y, path.weight.z));
+    var part = 1.0;
+    if path.bounces >= FEWEST_BOUNCES && most < LEAST {
+        part = most / LEAST;
+    }
+    if path.draw > frame.path_turns {
+        part *= 0.5;
+    }
+    if part == 1.0 {
+        return 1.0;
+    }
+    return select(0.0, 1.0 / part, u < part);
+}

@@ -1,0 +1,170 @@
+//! Path tracing: flags to [`PathTracing`].
+
+use super::numbers::positive;
+use super::{LightFlags, Numbers, finite};
+use crate::technique::pathtrace::{PathTracing, Phase};
+use crate::technique::{Light, LightSpace};
+use clap::Args;
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use std::{fmt, str::FromStr};
+
+const HEADING: &str = "Path tracing";
+
+/// The flags, none of them filled in.
+#[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct PathFlags {
+    /// Paths a pixel: noise halves with four times as many [default: 64]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_PATHS), help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spp: Option<u32>,
+    /// Other numbers, other noise [default: 0]
+    #[arg(long, value_name = "N", help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seed: Option<u32>,
+    /// How often light is scattered at most; 0: matter shines in its colours, as in --technique raycast [default: as
+    /// often as it is]
+    #[arg(long, value_name = "N", help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bounces: Option<u32>,
+    /// Multiplies extinction [default: 1]
+    #[arg(long, value_name = "F", value_parser = positive, help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub density_scale: Option<f64>,
+    /// Multiplies the part of light that is scattered and not absorbed, which is the colour of the transfer function
+    /// [default: 1]
+    #[arg(long, value_name = "F", value_parser = finite, help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub albedo: Option<f64>,
+    /// Where matter scatters light to: isotropic, rayleigh, hg:G with the mean cosine G (over 0: forward), or hg:F,G1,G2, two
+    /// lobes of which the first has the part F [default: isotropic]
+    #[arg(long, value_name = "PHASE", allow_hyphen_values = true, help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub phase: Option<PhaseWord>,
+    /// Light from all around, linear red, green and blue [default: none]
+    #[arg(long, value_name = "R,G,B", help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub environment: Option<Numbers<3>>,
+    /// How much of matter scatters as a surface across its gradient: an edge as steep as the range of values over a voxel
+    /// does so by the chance 1 - exp(-S) [default: 0, none]
+    #[arg(long, value_name = "S", value_parser = finite, help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub surface_scattering: Option<f64>,
+}
+
+/// Their number is an f32 somewhere.
+const MOST_PATHS: i64 = 1 << 20;
+
+impl PathFlags {
+    /// What paths are, with the lights that others name.
+    pub fn path(&self, light: &LightFlags) -> PathTracing {
+        let default = PathTracing::default();
+        let mut lights: Vec<Light> = light.light.iter().map(|word| word.light()).collect();
+        if lights.is_empty() && self.environment.is_none() {
+            lights.push(Light {
+                towards: DVec3::Z,
+                space: LightSpace::Camera,
+                srgb: [1.0; 3],
+            });
+        }
+        PathTracing {
+            samples: self.spp.unwrap_or(default.samples),
+            seed: self.seed.unwrap_or(default.seed),
+            bounces: self.bounces,
+            density: self.density_scale.unwrap_or(default.density),
+            albedo: self.albedo.unwrap_or(default.albedo),
+            phase: self.phase.map_or(default.phase, |word| word.0),
+            lights,
+            light_size_degrees: light.light_size.unwrap_or(default.light_size_degrees),
+            sky: self.environment.map_or(default.sky, |numbers| numbers.0),
+            surface: self.surface_scattering.unwrap_or(default.surface),
+            ..default
+        }
+    }
+
+    /// Flags that change nothing where no paths are traced.
+    pub fn idle(&self) -> Vec<&'static str> {
+        match *self == Self::default() {
+            true => Vec::new(),
+            false => vec![
+                "--spp, --seed, --bounces, --density-scale, --albedo, --phase, --environment and --surface-scattering have no effect without --technique pathtrace",
+            ],
+        }
+    }
+}
+
+/// `isotropic`, `rayleigh`, `hg:G` or `hg:F,G1,G2`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct PhaseWord(pub Phase);
+
+impl FromStr for PhaseWord {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wanted = || "wanted isotropic, rayleigh, hg:G or hg:F,G1,G2".to_owned();
+        Ok(Self(match text {
+            "isotropic" => Phase::Isotropic,
+            "rayleigh" => Phase::Rayleigh,
+            _ => {
+                let numbers = text.strip_prefix("hg:").ok_or_else(wanted)?;
+                match numbers.matches(',').count() {
+                    0 => Phase::HenyeyGreenstein(Numbers::<1>::from_str(numbers)?.0[0]),
+                    2 => {
+                        let [part, g1, g2] = Numbers::<3>::from_str(numbers)?.0;
+                        Phase::TwoLobes { part, g: [g1, g2] }
+                    }
+                    _ => return Err(wanted()),
+                }
+            }
+        }))
+    }
+}
+
+impl fmt::Display for PhaseWord {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Phase::Isotropic => f.write_str("isotropic"),
+            Phase::Rayleigh => f.write_str("rayleigh"),
+            Phase::HenyeyGreenstein(g) => write!(f, "hg:{g}"),
+            Phase::TwoLobes { part, g: [g1, g2] } => write!(f, "hg:{part},{g1},{g2}"),
+        }
+    }
+}
+
+impl TryFrom<String> for PhaseWord {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        text.parse()
+    }
+}
+
+impl From<PhaseWord> for String {
+    fn from(word: PhaseWord) -> Self {
+        word.to_string()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_phase_comes_back_from_its_word() {
+        for text in [
+            "isotropic",
+            "rayleigh",
+            "hg:0.85",
+            "hg:-0.3",
+            "hg:0.7,0.8,-0.4",
+        ] {
+            let word: PhaseWord = text.parse().expect("a phase");
+            assert_eq!(word.to_string(), text);
+        }
+        for text in ["mie", "hg", "hg:", "hg:1,2", "hg:a", "0.5"] {
+            assert!(text.parse::<PhaseWord>().is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,181 @@
+//! Path tracing: matter as a medium that absorbs and scatters, with surfaces in it (Kajiya & Von Herzen 1984; Kajiya 1986).
+//!
+//! ```text
+//! L(x, w) = integral over the ray of T sigma (albedo (light + integral over the sphere of p(c) L(x', w'))) + T sky
+//! ```
+//!
+//! Opacity of the transfer function is extinction, its colour the albedo. Each pixel is the mean of independent paths, which
+//! is the answer of this equation but for noise: its standard deviation falls as 1 / sqrt(paths).
+
+mod elementary;
+mod majorants;
+mod phase;
+mod random;
+#[doc(hidden)]
+pub mod reference;
+mod rules;
+
+pub use phase::Phase;
+
+use super::gather::{Gather, GatherDesc, RayPass, rays_of};
+use super::registry::TechniqueDesc;
+use super::{Error, Light, View};
+use crate::color::decode_srgb;
+use crate::gpu;
+use crate::resident::TextureLayout;
+use crate::shaders::{Frame, FrameFields, MAJORANT_BINS, MAJORANT_ROWS, MAX_LIGHTS};
+use crate::transfer::{TransferFunction, extinction};
+use glam::DVec3;
+use majorants::Majorants;
+
+/// What paths are. Other techniques do not look at it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PathTracing {
+    /// Paths a pixel; at least 1.
+    pub samples: u32,
+    /// The number of the first of them: pictures of paths `0..a` and `a..b` add up to that of `0..b`.
+    pub first_sample: u32,
+    /// Other numbers, other noise.
+    pub seed: u32,
+    /// How often light is scattered at most; 0: it is not, and matter shines in its colours as in a composite. `None`: as
+    /// often as it is.
+    pub bounces: Option<u32>,
+    /// What extinctions are multiplied by; positive.
+    pub density: f64,
+    /// What albedos are multiplied by, 0 to 1.
+    pub albedo: f64,
+    /// Where the medium scatters light to.
+    pub phase: Phase,
+    /// At most [`MAX_LIGHTS`]. A light of colour 1 makes a white surface across its way white: its irradiance is pi.
+    pub lights: Vec<Light>,
+    /// How wide lights look, in degrees, 0 to 90.
+    pub light_size_degrees: f64,
+    /// Radiance from all around, linear red, green and blue.
+    pub sky: [f64; 3],
+    /// How much of matter is surface: a collision is one with a surface by the chance 1 - exp(-`surface` |gradient|), the
+    /// gradient in ranges of values a smallest spacing. 0: there are none.
+    pub surface: f64,
+}
+
+impl Default for PathTracing {
+    fn default() -> Self {
+        Self {
+            samples: 64,
+            first_sample: 0,
+            seed: 0,
+            bounces: None,
+            density: 1.0,
+            albedo: 1.0,
+            phase: Phase::default(),
+            lights: Vec::new(),
+            light_size_degrees: 0.0,
+            sky: [0.0; 3],
+            surface: 0.0,
+        }
+    }
+}
+
+/// Path tracing, to those who ask.
+pub(super) static DESC: TechniqueDesc = TechniqueDesc {
+    casts_rays: true,
+    draws_stacks: false,
+    splats: false,
+    traces_paths: true,
+    streams: false,
+    // `Settings::check_paths` refuses by name.
+    supports: |_| Ok(()),
+    has_half_angle: false,
+    base_plane: None,
+    layouts: &[TextureLayout::Texture3d],
+    layout_of: |_| TextureLayout::Texture3d,
+    longest_sample_count: |view| view.longest_sample_count(),
+    set_slices: |_, _, _| 0,
+    gather,
+    slice_shaders: None,
+};
+
+fn gather(desc: &GatherDesc) -> Result<Box<dyn Gather>, gpu::Error> {
+    let variant = desc.variant;
+    let transfer = match variant.transfer {
+        "points" => "points",
+        _ => "table",
+    };
+    let name = format!("pathtrace.{}.{}.{transfer}", variant.filter, variant.holes);
+    Ok(rays_of(desc.gpu, RayPass::picture_of(desc.gpu, &name)?))
+}
+
+/// Turns of the loop over events after which paths end by chance: all ends long before a driver ends the loop
+/// ([`crate::gpu::Caps::max_loop_turns`]).
+const MOST_TURNS: u32 = 1 << 14;
+
+/// What paths want to know of the volume that they go through.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Medium<'a> {
+    /// Its function.
+    pub function: &'a TransferFunction,
+    /// World length that its opacities are for.
+    pub reference_length: f64,
+    /// The range of the volume's values.
+    pub value_range: [f64; 2],
+    /// The shortest side of a voxel, world.
+    pub smallest_spacing: f64,
+}
+
+/// f32 rounds a table's entries and the products with them.
+const MAJORANT_SLACK: f64 = 1.0 + 1e-5;
+
+impl PathTracing {
+    /// Tells the parameters what they do not know without the volume.
+    pub(crate) fn tell(&self, medium: &Medium, frame: &mut Frame) {
+        let Medium {
+            function,
+            reference_length,
+            value_range: [low, high],
+            smallest_spacing,
+        } = *medium;
+        let majorants = Majorants::new(function, |opacity| {
+            MAJORANT_SLACK * self.density * extinction(opacity, reference_length)
+        });
+        frame.path_bin_first = majorants.first;
+        frame.path_bin_scale = majorants.scale;
+        frame.path_majorants = majorants.rows;
+        // The last row has one entry: of all bins.
+        frame.path_majorant = majorants.rows[(MAJORANT_BINS * (MAJORANT_ROWS - 1) / 4) as usize][0];
+        let range = high - low;
+        frame.path_surface = match range > 0.0 {
+            true => (self.surface * smallest_spacing / range) as f32,
+            false => 0.0,
+        };
+    }
+}
+
+impl View<'_> {
+    /// The parameters of paths and their lights.
+    pub(super) fn set_paths(&self, fields: &mut FrameFields) -> Result<(), Error> {
+        let path = &self.settings.path;
+        fields.path_first = path.first_sample;
+        fields.path_count = path.samples;
+        fields.path_seed = path.seed;
+        fields.path_bounces = path.bounces.unwrap_or(u32::MAX);
+        fields.path_sky = path.sky.map(|c| c as f32);
+        fields.path_phase = path.phase.numbers();
+        fields.path_density = path.density as f32;
+        fields.path_albedo = path.albedo as f32;
+        fields.path_turns = MOST_TURNS;
+        let half = (0.5 * path.light_size_degrees).to_radians();
+        fields.path_light_size = (1.0 - half.cos()) as f32;
+        let (wanted, limit) = (path.lights.len(), MAX_LIGHTS as usize);
+        if wanted > limit {
+            return Err(Error::TooManyLights { wanted, limit });
+        }
+        let camera = self.camera.frame();
+        fields.light_count = wanted as u32;
+        for (i, light) in path.lights.iter().enumerate() {
+            let way: DVec3 = light.way(&camera)?;
+            let [r, g, b] = light.srgb.map(|c| decode_srgb(c) as f32);
+            fields.light_directions[i] = way.extend(0.0).as_vec4().to_array();
+            fields.light_colors[i] = [r, g, b, 1.0];
+        }
+        Ok(())
+    }
+}

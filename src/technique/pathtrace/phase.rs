@@ -1,0 +1,175 @@
+//! Where a medium scatters light to: the words, and the CPU reference of `shaders/lib/phase.wgsl`.
+//!
+//! ```text
+//! isotropic             1 / 4 pi
+//! Henyey & Greenstein   (1 - g^2) / (4 pi d^(3/2))      d = (1 - g)^2 + 2 g (1 - c)
+//! two lobes             f p(g1) + (1 - f) p(g2)
+//! Rayleigh              3 (1 + c^2) / 16 pi
+//! ```
+//!
+//! per steradian, of the cosine c between the directions of travel before and behind: a light behind the eye is scattered
+//! back, c = -1. Henyey & Greenstein, Astrophysical Journal 93, 1941.
+
+use crate::real::Real;
+use crate::shaders::Frame;
+use std::f64::consts::PI;
+
+/// Where a medium scatters light to.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Phase {
+    /// To all sides alike.
+    #[default]
+    Isotropic,
+    /// As particles far smaller than the wavelength do.
+    Rayleigh,
+    /// Henyey & Greenstein's, with the mean cosine g, -0.99 to 0.99: positive forward, negative back.
+    HenyeyGreenstein(f64),
+    /// A part of `part` (0 to 1) by the first g, the rest by the second.
+    TwoLobes {
+        /// Of the first.
+        part: f64,
+        /// Mean cosines of both.
+        g: [f64; 2],
+    },
+}
+
+impl Phase {
+    /// What the shader is told: f, g1, g2, and 1 for Rayleigh.
+    pub(super) fn numbers(self) -> [f32; 4] {
+        let [f, g1, g2, is_rayleigh] = match self {
+            Self::Isotropic => [1.0, 0.0, 0.0, 0.0],
+            Self::Rayleigh => [1.0, 0.0, 0.0, 1.0],
+            Self::HenyeyGreenstein(g) => [1.0, g, g, 0.0],
+            Self::TwoLobes { part, g: [g1, g2] } => [part, g1, g2, 0.0],
+        };
+        [f, g1, g2, is_rayleigh].map(|n| n as f32)
+    }
+
+    /// The cosines and the part, which have ranges.
+    pub(super) fn parts(self) -> (f64, [f64; 2]) {
+        match self {
+            Self::Isotropic | Self::Rayleigh => (1.0, [0.0; 2]),
+            Self::HenyeyGreenstein(g) => (1.0, [g; 2]),
+            Self::TwoLobes { part, g } => (part, g),
+        }
+    }
+}
+
+/// Density at a cosine, per steradian.
+pub fn phase_value<R: Real>(frame: &Frame, c: R) -> R {
+    let n = |x: f64| R::from_f64(x);
+    let [f, g1, g2, is_rayleigh] = frame.path_phase;
+    if is_rayleigh != 0.0 {
+        return n(3.0) * (n(1.0) + c * c) / n(16.0 * PI);
+    }
+    let f = R::from_f32(f);
+    f * lobe(R::from_f32(g1), c) + (n(1.0) - f) * lobe(R::from_f32(g2), c)
+}
+
+fn lobe<R: Real>(g: R, c: R) -> R {
+    let (one, two) = (R::from_f64(1.0), R::from_f64(2.0));
+    let d = (one - g) * (one - g) + two * g * (one - c);
+    (one - g * g) / (R::from_f64(4.0 * PI) * d * d.sqrt())
+}
+
+/// A cosine with this density, by two numbers from 0 to 1.
+pub fn phase_cosine<R: Real>(frame: &Frame, lobe_by: R, u: R) -> R {
+    let n = |x: f64| R::from_f64(x);
+    let one = n(1.0);
+    let [f, g1, g2, is_rayleigh] = frame.path_phase;
+    if is_rayleigh != 0.0 {
+        let z = n(4.0) * u - n(2.0);
+        let a = cube_root(z.abs() + (z * z + one).sqrt());
+        let c = a - one / a;
+        return if z < n(0.0) { -c } else { c };
+    }
+    let g = R::from_f32(if lobe_by < R::from_f32(f) { g1 } else { g2 });
+    let c = if g.abs() < n(0.5) {
+        let v = n(2.0) * u - one;
+        let q = one + g * v;
+        let sum =
+            v + n(0.5) * g * (v * v + n(3.0)) + g * g * v + n(0.5) * g * g * g * (v * v - one);
+        sum / (q * q)
+    } else {
+        let s = (one - g * g) / (one - g + n(2.0) * g * u);
+        (one + g * g - s * s) / (n(2.0) * g)
+    };
+    c.max(-one).min(one)
+}
+
+/// Of numbers from 1 to 5.
+fn cube_root<R: Real>(x: R) -> R {
+    let n = |x: f64| R::from_f64(x);
+    let start = n(0.6) + n(0.4) * x - n(0.035) * x * x;
+    (0..4).fold(start, |root, _| {
+        (n(2.0) * root + x / (root * root)) / n(3.0)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frame(phase: Phase) -> Frame {
+        Frame {
+            path_phase: phase.numbers(),
+            ..bytemuck::Zeroable::zeroed()
+        }
+    }
+
+    const PHASES: [Phase; 7] = [
+        Phase::Isotropic,
+        Phase::Rayleigh,
+        Phase::HenyeyGreenstein(0.3),
+        Phase::HenyeyGreenstein(-0.6),
+        Phase::HenyeyGreenstein(0.85),
+        Phase::HenyeyGreenstein(1e-4),
+        Phase::TwoLobes {
+            part: 0.7,
+            g: [0.8, -0.4],
+        },
+    ];
+
+    /// Legendre moments of Henyey and Greenstein's function are g^l; Rayleigh's mean square is 2/5.
+    #[test]
+    fn moments_of_cosines_are_those_of_the_density() {
+        for phase in PHASES {
+            let frame = frame(phase);
+            let mut moments = [0.0; 4];
+            let count = 1 << 16;
+            for i in 0..count {
+                // Even over the square: a lattice.
+                let u = (f64::from(i) + 0.5) / f64::from(count);
+                let v = (f64::from(i) * 0.618_033_988_749_894_9).fract();
+                let c = phase_cosine(&frame, v, u);
+                let powers = [
+                    1.0,
+                    c,
+                    0.5 * (3.0 * c * c - 1.0),
+                    0.5 * (5.0 * c * c - 3.0) * c,
+                ];
+                moments = std::array::from_fn(|l| moments[l] + powers[l] / f64::from(count));
+            }
+            let (f, [g1, g2]) = phase.parts();
+            let moment = |l: i32| match phase {
+                Phase::Rayleigh => [1.0, 0.0, 0.1, 0.0][l as usize],
+                _ => f * g1.powi(l) + (1.0 - f) * g2.powi(l),
+            };
+            for (l, found) in (0..).zip(moments) {
+                assert!((found - moment(l)).abs() < 3e-4, "{phase:?} {l}: {found}");
+            }
+        }
+    }
+
+    #[test]
+    fn densities_integrate_to_one_over_the_sphere() {
+        for phase in PHASES {
+            let frame = frame(phase);
+            let count = 200_000;
+            let c = |i: i32| -1.0 + 2.0 * (f64::from(i) + 0.5) / f64::from(count);
+            let sum: f64 = (0..count).map(|i| phase_value(&frame, c(i))).sum();
+            let integral = 2.0 * PI * sum * 2.0 / f64::from(count);
+            assert!((integral - 1.0).abs() < 1e-6, "{phase:?}: {integral}");
+        }
+    }
+}

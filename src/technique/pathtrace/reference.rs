@@ -1,0 +1,290 @@
+//! Path tracing on the CPU: CPU reference of `shaders/pathtrace.wgsl`.
+
+use super::elementary::{around, minus_ln};
+use super::phase::{phase_cosine, phase_value};
+use super::random::random_numbers;
+use crate::ray::{Ray, domain_interval, pixel_ray, voxel_ray};
+use crate::real::{Real, dot, scale};
+use crate::shaders::Frame;
+use crate::technique::reference::{Gathered, Samples, moved};
+
+/// Draws of a collision, and of the direction behind it.
+const OF_COLLISION: u32 = 0x4000_0000;
+const OF_DIRECTION: u32 = 0x8000_0000;
+/// Behind so many bounces, weights under `LEAST` end by chance.
+const FEWEST_BOUNCES: u32 = 4;
+const LEAST: f64 = 0.1;
+
+/// The mean of the paths of a pixel.
+pub(crate) fn pixel<R: Real>(of: &impl Samples<R>, pixel: [R; 2]) -> Gathered<R> {
+    let frame = of.frame();
+    let corner = pixel.map(|x| x.to_i32() as u32);
+    let number = corner[1] * frame.extent_pixels[0] + corner[0];
+    let mut sum = [R::from_f64(0.0); 4];
+    let mut turns = 0;
+    for sample in frame.path_first..frame.path_first + frame.path_count {
+        let key = [number, sample, 0, frame.path_seed];
+        let path = Path::traced(of, corner, key);
+        let [r, g, b] = path.radiance;
+        let alpha = R::from_f64(f64::from(u8::from(path.has_met)));
+        let found = [r, g, b, alpha];
+        sum = std::array::from_fn(|c| sum[c] + found[c]);
+        turns += path.draw;
+    }
+    let count = R::from_f64(f64::from(frame.path_count));
+    Gathered::of_blended(sum.map(|s| s / count), turns as f32)
+}
+
+/// The part of a ray that lies in the domain.
+struct Walk<R> {
+    world: Ray<R>,
+    voxel: Ray<R>,
+    t: R,
+    end: R,
+}
+
+impl<R: Real> Walk<R> {
+    fn along(frame: &Frame, world: Ray<R>) -> Self {
+        let voxel = voxel_ray(frame, &world);
+        let [t, end] = domain_interval(frame, &world, &voxel);
+        Self {
+            world,
+            voxel,
+            t,
+            end,
+        }
+    }
+
+    /// On to the next tentative collision, or to where the domain ends.
+    fn step(&mut self, frame: &Frame, u: R) -> bool {
+        let one = R::from_f64(1.0);
+        let t = self.t + minus_ln(one - u) / R::from_f32(frame.path_majorant);
+        self.t = t.min(self.end);
+        t < self.end
+    }
+}
+
+struct Path<R> {
+    weight: [R; 3],
+    radiance: [R; 3],
+    bounces: u32,
+    draw: u32,
+    has_met: bool,
+}
+
+impl<R: Real> Path<R> {
+    fn traced(of: &impl Samples<R>, corner: [u32; 2], mut key: [u32; 4]) -> Self {
+        let frame = of.frame();
+        let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));
+        let [x, y, ..] = random_numbers::<R>(key);
+        let [across, down] = corner.map(|n| R::from_f64(n.into()));
+        let mut walk = Walk::along(frame, pixel_ray(frame, [across + x, down + y]));
+        let mut path = Self {
+            weight: [one; 3],
+            radiance: [zero; 3],
+            bounces: 0,
+            draw: 1,
+            has_met: false,
+        };
+        while let Some((color, place)) = path.collide(of, &mut walk, &mut key) {
+            path.has_met = true;
+            if frame.path_bounces == 0 {
+                path.radiance = color;
+            }
+            if path.bounces == frame.path_bounces {
+                return path;
+            }
+            let albedo = R::from_f32(frame.path_albedo);
+            path.weight = std::array::from_fn(|c| path.weight[c] * (color[c] * albedo));
+            key[2] |= OF_COLLISION;
+            let numbers = random_numbers::<R>(key);
+            let incoming = walk.world.direction;
+            let from = walk.world.at(walk.t);
+            let normal = normal_at(of, place, incoming, numbers[0]);
+            let (way, light) = light_at(frame, incoming, normal, numbers);
+            if (0..3).any(|c| path.weight[c] * light[c] > zero) {
+                let way = Ray {
+                    origin: from,
+                    direction: way,
+                };
+                let through = path.through(of, Walk::along(frame, way), &mut key);
+                path.radiance =
+                    std::array::from_fn(|c| path.radiance[c] + path.weight[c] * light[c] * through);
+            }
+            key[2] = path.draw | OF_DIRECTION;
+            let numbers = random_numbers::<R>(key);
+            path.bounces += 1;
+            let kept = path.kept(frame, numbers[0]);
+            path.weight = scale(path.weight, kept);
+            if path.weight.iter().all(|&w| w <= zero) {
+                return path;
+            }
+            let next = Ray {
+                origin: from,
+                direction: scattered(frame, incoming, normal, numbers),
+            };
+            walk = Walk::along(frame, next);
+        }
+        if path.has_met {
+            let sky = frame.path_sky.map(R::from_f32);
+            path.radiance = std::array::from_fn(|c| path.radiance[c] + path.weight[c] * sky[c]);
+        }
+        path
+    }
+
+    /// The next numbers of the path.
+    fn draw(&mut self, key: &mut [u32; 4]) -> [R; 4] {
+        key[2] = self.draw;
+        self.draw += 1;
+        random_numbers(*key)
+    }
+
+    /// Colour and place (voxel space) of the next real collision; `None`: the walk has left.
+    fn collide(
+        &mut self,
+        of: &impl Samples<R>,
+        walk: &mut Walk<R>,
+        key: &mut [u32; 4],
+    ) -> Option<([R; 3], [R; 3])> {
+        loop {
+            let [u, v, ..] = self.draw(key);
+            if !walk.step(of.frame(), u) {
+                return None;
+            }
+            let place = walk.voxel.at(walk.t);
+            let (color, chance) = matter(of, place);
+            if v < chance {
+                return Some((color, place));
+            }
+        }
+    }
+
+    /// What comes through along a walk: ratio tracking, and roulette where little does.
+    fn through(&mut self, of: &impl Samples<R>, mut walk: Walk<R>, key: &mut [u32; 4]) -> R {
+        let (zero, least) = (R::from_f64(0.0), R::from_f64(LEAST));
+        let mut through = R::from_f64(1.0);
+        loop {
+            let [u, v, ..] = self.draw(key);
+            if !walk.step(of.frame(), u) {
+                return through;
+            }
+            let (_, chance) = matter(of, walk.voxel.at(walk.t));
+            through = through * (R::from_f64(1.0) - chance);
+            if through < least {
+                through = if v * least < through { least } else { zero };
+            }
+            if through <= zero {
+                return zero;
+            }
+        }
+    }
+
+    /// What the weight is multiplied by; 0: the path ends.
+    fn kept(&self, frame: &Frame, u: R) -> R {
+        let (one, least) = (R::from_f64(1.0), R::from_f64(LEAST));
+        let most = self.weight[0].max(self.weight[1].max(self.weight[2]));
+        let mut part = one;
+        if self.bounces >= FEWEST_BOUNCES && most < least {
+            part = most / least;
+        }
+        if self.draw > frame.path_turns {
+            part = part * R::from_f64(0.5);
+        }
+        match u < part {
+            true => one / part,
+            false => R::from_f64(0.0),
+        }
+    }
+}
+
+/// Colour of what is there, and the chance that a tentative collision is a real one.
+fn matter<R: Real>(of: &impl Samples<R>, place: [R; 3]) -> ([R; 3], R) {
+    let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));
+    let Some(value) = of.value(place) else {
+        return ([zero; 3], zero);
+    };
+    let [r, g, b, extinction] = of.classify(value);
+    let [density, majorant] = [of.frame().path_density, of.frame().path_majorant];
+    let chance = extinction * R::from_f32(density) / R::from_f32(majorant);
+    ([r, g, b], chance.min(one))
+}
+
+/// The normal of a surface, on the side that the path comes from; `None`: in the medium.
+fn normal_at<R: Real>(
+    of: &impl Samples<R>,
+    place: [R; 3],
+    incoming: [R; 3],
+    u: R,
+) -> Option<[R; 3]> {
+    let frame = of.frame();
+    if frame.path_surface == 0.0 {
+        return None;
+    }
+    let (half, one) = (R::from_f64(0.5), R::from_f64(1.0));
+    let tap = |step| of.value(moved(place, step));
+    let slope = |k: usize| {
+        let mut step = [0; 3];
+        step[k] = 1;
+        Some(half * (tap(step)? - tap(step.map(|n| -n))?))
+    };
+    let slope = [slope(0)?, slope(1)?, slope(2)?];
+    let rows = frame
+        .voxel_from_world
+        .map(|row| [row[0], row[1], row[2]].map(R::from_f32));
+    let gradient: [R; 3] = std::array::from_fn(|k| {
+        rows[0][k] * slope[0] + rows[1][k] * slope[1] + rows[2][k] * slope[2]
+    });
+    let steepness = dot(gradient, gradient).sqrt();
+    let chance = one - (-R::from_f32(frame.path_surface) * steepness).exp();
+    if steepness <= R::from_f32(frame.flat_gradient) || u >= chance {
+        return None;
+    }
+    let normal = scale(gradient, one / steepness);
+    let is_behind = dot(normal, incoming) > R::from_f64(0.0);
+    Some(if is_behind {
+        scale(normal, -one)
+    } else {
+        normal
+    })
+}
+
+/// The way to one of the lights, and what it gives if nothing is in the way.
+fn light_at<R: Real>(
+    frame: &Frame,
+    incoming: [R; 3],
+    normal: Option<[R; 3]>,
+    numbers: [R; 4],
+) -> ([R; 3], [R; 3]) {
+    let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));
+    if frame.light_count == 0 {
+        return ([zero; 3], [zero; 3]);
+    }
+    let count = R::from_f64(frame.light_count.into());
+    let i = ((numbers[1] * count).to_i32() as u32).min(frame.light_count - 1) as usize;
+    let vector = |[x, y, z, _]: [f32; 4]| [x, y, z].map(R::from_f32);
+    let cosine = one - numbers[2] * R::from_f32(frame.path_light_size);
+    let way = around(vector(frame.light_directions[i]), cosine, numbers[3]);
+    let part = match normal {
+        Some(normal) => dot(normal, way).max(zero),
+        None => R::from_f64(std::f64::consts::PI) * phase_value(frame, dot(incoming, way)),
+    };
+    (way, scale(vector(frame.light_colors[i]), count * part))
+}
+
+/// Where the path goes on.
+fn scattered<R: Real>(
+    frame: &Frame,
+    incoming: [R; 3],
+    normal: Option<[R; 3]>,
+    numbers: [R; 4],
+) -> [R; 3] {
+    let one = R::from_f64(1.0);
+    match normal {
+        Some(normal) => around(normal, (one - numbers[2]).sqrt(), numbers[3]),
+        None => around(
+            incoming,
+            phase_cosine(frame, numbers[1], numbers[2]),
+            numbers[3],
+        ),
+    }
+}

@@ -1,0 +1,114 @@
+//! What does not go together with paths.
+
+use super::PathTracing;
+use crate::picture::ColorSpace;
+use crate::technique::compatibility::refuse;
+use crate::technique::{Error, Filter, Lattice, Mode, Settings};
+
+const PATHS: &str = "path tracing";
+
+impl Settings {
+    /// Whether a picture of paths has what these settings ask for; nothing for other techniques.
+    ///
+    /// # Errors
+    /// [`Error::NotFor`], and [`Error::OutOfRange`] for what makes no paths.
+    pub(in crate::technique) fn check_paths(&self) -> Result<(), Error> {
+        if !self.technique.traces_paths() {
+            return Ok(());
+        }
+        let mode = self.mode;
+        let of = "composite";
+        refuse(
+            mode != Mode::Composite,
+            PATHS,
+            of,
+            format_args!("mode {mode}"),
+        )?;
+        let of = "the filters nearest and linear";
+        let is_wide = !matches!(self.filter, Filter::Nearest | Filter::Linear);
+        refuse(
+            is_wide,
+            PATHS,
+            of,
+            format_args!("the filter {}", self.filter),
+        )?;
+        let of = "collisions at random places, and no lattice";
+        let lattice = format_args!("the lattice {}", self.lattice);
+        refuse(self.lattice != Lattice::Ray, PATHS, of, lattice)?;
+        refuse(
+            self.preintegrated,
+            PATHS,
+            of,
+            "pre-integrated classification",
+        )?;
+        refuse(self.adaptive_steps.is_some(), PATHS, of, "adaptive steps")?;
+        let of = "rays at random places of the pixel";
+        let found = "several rays a pixel: take more paths";
+        refuse(self.rays_per_side > 1, PATHS, of, found)?;
+        let of = "what lies behind cuts";
+        refuse(self.cut_faces.is_some(), PATHS, of, "opaque cut faces")?;
+        let of = "light that scatters";
+        refuse(self.shading.is_some(), PATHS, of, "shading")?;
+        let found = "ambient occlusion, which is there already";
+        refuse(self.ambient_occlusion.is_some(), PATHS, of, found)?;
+        let of = "linear light";
+        let is_display = self.color_space == ColorSpace::Display;
+        refuse(is_display, PATHS, of, "display numbers")?;
+        self.path.check()
+    }
+
+    /// Whether paths go through such a volume: one of numbers, in one texture, under a function of the value alone.
+    ///
+    /// # Errors
+    /// [`Error::NotFor`].
+    pub(crate) fn check_path_volume(&self, is_one: bool, bricks: usize) -> Result<(), Error> {
+        let is_traced = self.technique.traces_paths();
+        let of = "one volume of numbers";
+        refuse(
+            is_traced && !is_one,
+            PATHS,
+            of,
+            "several, or colours, or gradients",
+        )?;
+        let of =
+            "a volume that lies in one texture of the device: light goes through all of it at once";
+        refuse(
+            is_traced && bricks > 1,
+            PATHS,
+            of,
+            format_args!("one in {bricks} bricks"),
+        )
+    }
+}
+
+impl PathTracing {
+    fn check(&self) -> Result<(), Error> {
+        let count = f64::from(self.samples);
+        let wanted = "1 or more";
+        Error::unless(self.samples > 0, "paths a pixel", wanted, count)?;
+        let density = self.density;
+        let is_right = density > 0.0 && density.is_finite();
+        Error::unless(is_right, "the density scale", "a number over 0", density)?;
+        let name = "the scale of albedos";
+        let wanted = "0 to 1: light would grow";
+        let is_part = |x: f64| (0.0..=1.0).contains(&x);
+        Error::unless(is_part(self.albedo), name, wanted, self.albedo)?;
+        let (part, cosines) = self.phase.parts();
+        let name = "the part of the first lobe";
+        Error::unless(is_part(part), name, "0 to 1", part)?;
+        for g in cosines {
+            let name = "the mean cosine of a phase function";
+            Error::unless(g.abs() <= 0.99, name, "-0.99 to 0.99", g)?;
+        }
+        let size = self.light_size_degrees;
+        let is_right = (0.0..=90.0).contains(&size);
+        Error::unless(is_right, "the size of lights", "0 to 90 degrees", size)?;
+        for c in self.sky {
+            let is_right = c >= 0.0 && c.is_finite();
+            Error::unless(is_right, "light of the sky", "0 or more", c)?;
+        }
+        let is_right = self.surface >= 0.0 && self.surface.is_finite();
+        let name = "the scattering of surfaces";
+        Error::unless(is_right, name, "0 or more", self.surface)
+    }
+}

@@ -1,0 +1,103 @@
+//! Path tracing from the command line.
+
+use crate::person::Folder;
+use std::fs;
+
+const SMALL: &str = "--size 24x20 --spp 2 --force";
+
+#[test]
+fn a_saved_scene_of_the_cinematic_look_draws_the_same_picture() {
+    let folder = Folder::new();
+    folder
+        .run(&format!(
+            "render phantom:head,n=24 --look cinematic -o a.png --save-scene s.json {SMALL}"
+        ))
+        .assert_done();
+    folder.run("render --scene s.json -o b.png").assert_done();
+    let read = |name| fs::read(folder.path(name)).expect("a file");
+    assert!(read("a.png") == read("b.png"));
+    let scene = String::from_utf8(read("s.json")).expect("text");
+    for word in ["pathtrace", "surface-scattering", "environment", "camera:"] {
+        let underscored = word.replace('-', "_");
+        assert!(
+            scene.contains(word) || scene.contains(&underscored),
+            "{word}: {scene}"
+        );
+    }
+}
+
+#[test]
+fn flags_win_over_the_look_and_change_the_picture() {
+    let folder = Folder::new();
+    let mut seen = Vec::new();
+    for words in [
+        "",
+        "--seed 1",
+        "--bounces 1",
+        "--bounces 0",
+        "--density-scale 3",
+        "--albedo 0.3",
+        "--phase hg:-0.7",
+        "--environment 2,0,0",
+        "--surface-scattering 0",
+        "--light 0,0,1",
+        "--light-size 0",
+        "--technique raycast",
+        "--device reference",
+    ] {
+        let ran = folder.run(&format!(
+            "render phantom:head,n=24 --look cinematic {words} -o a.png {SMALL}"
+        ));
+        ran.assert_done();
+        let bytes = fs::read(folder.path("a.png")).expect("a picture");
+        assert!(!seen.contains(&bytes), "{words} changes nothing");
+        seen.push(bytes);
+    }
+}
+
+#[test]
+fn what_paths_do_not_go_with_is_refused_by_name() {
+    let folder = Folder::new();
+    folder
+        .run("convert phantom:sphere,n=8 -o l.nrrd --type u8 --window 0,1")
+        .assert_done();
+    for (words, said) in [
+        ("--mode mip", "mode mip"),
+        ("--filter cubic", "the filter cubic"),
+        ("--shading phong", "shading"),
+        ("--ambient-occlusion 0.5", "ambient occlusion"),
+        ("--aa 4", "rays a pixel"),
+        ("--jitter", "lattice jitter"),
+        ("--preintegrated", "pre-integrated"),
+        ("--adaptive-steps 0.01", "adaptive"),
+        ("--color-space display", "linear light"),
+        ("--labels l.nrrd", "one volume of numbers"),
+        ("--with l.nrrd", "one volume of numbers"),
+        ("--opacity-from l.nrrd", "one volume of numbers"),
+        ("--crop 0,4,0,8,0,8 --cut-faces", "cut faces"),
+        ("--flow stream", "--flow"),
+        ("--phase mie", "hg:G"),
+        ("--phase hg:1", "-0.99 to 0.99"),
+        ("--albedo 2", "light would grow"),
+        ("--environment=-1,0,0", "sky"),
+        ("--density-scale 0", "--density-scale"),
+        ("--light-size 120", "90 degrees"),
+        ("--spp 0", "--spp"),
+        ("--surface-scattering=-1", "surfaces"),
+    ] {
+        let ran = folder.run(&format!(
+            "render phantom:sphere,n=8 --technique pathtrace {words} -o q.png --size 20x20"
+        ));
+        ran.assert_refused(2, &[said]);
+    }
+    let ran = folder
+        .run("render phantom:sphere,n=8 --technique pathtrace --aov depth -o q.exr --size 20x20");
+    ran.assert_refused(2, &["depth"]);
+    let ran = folder.run("render phantom:sphere,n=8 --spp 3 -o q.png --size 20x20");
+    ran.assert_done();
+    assert!(
+        ran.err.contains("without --technique pathtrace"),
+        "{}",
+        ran.err
+    );
+}

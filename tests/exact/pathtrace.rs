@@ -1,0 +1,466 @@
+//! Random paths against answers of radiative transfer. Numbers are drawn from fixed seeds: a test that passes once passes
+//! for ever. SE: the standard error of a mean.
+
+use crate::shared::{device, volume_of};
+use glam::{DAffine3, DVec3, dvec3};
+use stratavox::camera::{Camera, Projection};
+use stratavox::color::encode_srgb;
+use stratavox::offscreen::{self, Renderer};
+use stratavox::picture::Picture;
+use stratavox::scene::{Beside, Scene};
+use stratavox::technique::pathtrace::{PathTracing, Phase};
+use stratavox::technique::{ClipPlane, Light, LightSpace, Settings, Technique};
+use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
+use stratavox::volume::Volume;
+
+/// Matter of one albedo, with extinctions per world length at values.
+fn matter(albedo: [f64; 3], extinctions: &[(f64, f64)]) -> TransferFunction {
+    let opacity = |&(value, extinction): &(f64, f64)| OpacityPoint {
+        value,
+        opacity: -(-extinction).exp_m1(),
+    };
+    TransferFunction {
+        color: vec![ColorPoint {
+            value: 0.0,
+            srgb: albedo.map(encode_srgb),
+        }],
+        opacity: extinctions.iter().map(opacity).collect(),
+        reference_length: Some(1.0),
+        interpolation: Interpolation::Linear,
+        gradient_transfer: None,
+    }
+}
+
+/// A layer one unit thick, so wide that nothing leaves by its sides.
+fn layer(value_at: impl Fn(f64) -> f64) -> Volume {
+    const THICK: u32 = 8;
+    let scale = dvec3(1e4, 1e4, 1.0 / f64::from(THICK));
+    let place = DAffine3::from_translation(dvec3(-1e4, -1e4, -1.0)) * DAffine3::from_scale(scale);
+    volume_of([2, 2, THICK], place, |p| value_at(p.z / f64::from(THICK)))
+}
+
+/// A direction at this cosine to the normal of the layer, at an angle around it.
+fn at(cosine: f64, turn: f64) -> DVec3 {
+    let sine = (1.0 - cosine * cosine).sqrt();
+    dvec3(sine * turn.cos(), sine * turn.sin(), cosine)
+}
+
+/// From so far above the layer, parallel rays.
+fn eye(towards: DVec3) -> Camera {
+    Camera {
+        eye: 3.0 * towards,
+        target: DVec3::ZERO,
+        up: DVec3::Y,
+        projection: Projection::Orthographic { view_height: 1.0 },
+        zoom: 1.0,
+    }
+}
+
+fn light(towards: DVec3) -> Light {
+    Light {
+        towards,
+        space: LightSpace::World,
+        srgb: [1.0; 3],
+    }
+}
+
+fn settings(path: PathTracing) -> Settings {
+    Settings {
+        technique: Technique::Pathtrace,
+        path,
+        ..Settings::default()
+    }
+}
+
+fn scene<'a>(
+    volume: &'a Volume,
+    function: &'a TransferFunction,
+    camera: &'a Camera,
+    settings: &'a Settings,
+    extent_pixels: [u32; 2],
+) -> Scene<'a> {
+    Scene {
+        volume,
+        transfer: Some(function),
+        beside: Beside::Nothing,
+        camera,
+        extent_pixels,
+        settings,
+    }
+}
+
+fn drawn(scene: &Scene) -> Picture {
+    let mut renderer = Renderer::new(device(), scene.volume).expect("a renderer");
+    renderer.render(scene, &[]).expect("a picture").picture
+}
+
+/// Mean and standard error of a channel over the pixels of a picture.
+fn mean(picture: &Picture, channel: usize) -> [f64; 2] {
+    let n = picture.pixels.len() as f64;
+    let numbers = || picture.pixels.iter().map(|p| f64::from(p[channel]));
+    let mean = numbers().sum::<f64>() / n;
+    let variance = numbers().map(|x| (x - mean).powi(2)).sum::<f64>() / (n - 1.0);
+    [mean, (variance / n).sqrt()]
+}
+
+/// Within four standard errors, of which none is large.
+fn assert_near(what: &str, [found, error]: [f64; 2], wanted: f64) {
+    assert!(error < 0.02 * wanted, "{what}: {error} of {wanted}");
+    let off = (found - wanted) / error.max(1e-12);
+    assert!(
+        off.abs() <= 4.0,
+        "{what}: {found} +- {error}, wanted {wanted}"
+    );
+    println!("{what}: {found:.5} +- {error:.5}, wanted {wanted:.5}");
+}
+
+/// A layer of optical depth `depth` seen from a cosine.
+fn radiance(path: PathTracing, depth: f64, cosine: f64) -> [f64; 2] {
+    // Opacities hold 8 at most: denser matter is scaled.
+    let scaled = depth / 8.0_f64.min(depth);
+    let function = matter([1.0; 3], &[(0.0, depth / scaled)]);
+    let settings = settings(PathTracing {
+        density: scaled,
+        ..path
+    });
+    let (volume, camera) = (layer(|_| 0.0), eye(at(cosine, 0.0)));
+    let scene = scene(&volume, &function, &camera, &settings, [48; 2]);
+    mean(&drawn(&scene), 0)
+}
+
+/// Chandrasekhar 1950: light scattered once by a layer, L = albedo pi p(c) mu0 / (mu + mu0) (1 - e^(-depth (1/mu + 1/mu0))).
+#[test]
+fn light_scattered_once_by_a_layer_has_its_closed_form() {
+    let (albedo, depth) = (0.8, 1.92);
+    for (cosine, cosine_of_light, turn, phase) in [
+        (0.5, 0.7, 2.0, Phase::Isotropic),
+        (1.0, 0.4, 0.0, Phase::Rayleigh),
+        (0.5, 0.7, 0.3, Phase::HenyeyGreenstein(0.6)),
+        (0.6, 0.8, 2.5, Phase::HenyeyGreenstein(-0.7)),
+    ] {
+        let to_light = at(cosine_of_light, turn);
+        let path = PathTracing {
+            samples: 16,
+            bounces: Some(1),
+            albedo,
+            phase,
+            lights: vec![light(to_light)],
+            ..PathTracing::default()
+        };
+        let found = radiance(path, depth, cosine);
+        // Of travel: from the eye into the layer, and on to the light.
+        let c = -at(cosine, 0.0).dot(to_light);
+        let density = match phase {
+            Phase::Isotropic => 0.25,
+            Phase::Rayleigh => 3.0 * (1.0 + c * c) / 16.0,
+            Phase::HenyeyGreenstein(g) => {
+                (1.0 - g * g) / (4.0 * (1.0 + g * g - 2.0 * g * c).powf(1.5))
+            }
+            Phase::TwoLobes { .. } => unreachable!("none is here"),
+        };
+        let (mu, mu0) = (cosine, cosine_of_light);
+        let lost = 1.0 - (-depth * (1.0 / mu + 1.0 / mu0)).exp();
+        let wanted = albedo * density * mu0 / (mu + mu0) * lost;
+        assert_near(&format!("{phase:?}"), found, wanted);
+    }
+}
+
+/// van de Hulst 1980, and adding and doubling: what a layer under an even sky sends to the eye is R + T without what comes
+/// straight through.
+#[test]
+fn layers_under_an_even_sky_reflect_and_transmit_what_tables_say() {
+    for (depth, albedo, g, cosine, reflected, transmitted) in [
+        (2.0, 0.9, 0.75, 1.0, 0.09739, 0.66096),
+        (1.0, 0.8, 0.0, 1.0, 0.21085, 0.54140),
+        (4.0, 0.95, 0.5, 1.0, 0.35317, 0.33905),
+        (4.0, 0.95, 0.5, 0.5, 0.49395, 0.21124),
+        (16.0, 0.999, 0.85, 1.0, 0.53978, 0.42559),
+    ] {
+        let path = PathTracing {
+            samples: 16,
+            albedo,
+            phase: Phase::HenyeyGreenstein(g),
+            sky: [1.0; 3],
+            ..PathTracing::default()
+        };
+        let found = radiance(path, depth, cosine);
+        let wanted = reflected + transmitted - (-depth / cosine).exp();
+        assert_near(&format!("{depth} {albedo} {g} {cosine}"), found, wanted);
+    }
+}
+
+/// Chandrasekhar 1950, by his H functions: L = albedo / 4 mu0 / (mu + mu0) H(mu) H(mu0) of matter without an end.
+#[test]
+fn matter_without_an_end_reflects_what_chandrasekhar_says() {
+    for (albedo, cosine, cosine_of_light, wanted) in [
+        (0.9, 1.0, 1.0, 0.385_072),
+        (0.9, 0.5, 0.8, 0.376_479),
+        (0.99, 0.7, 0.3, 0.244_503),
+    ] {
+        let path = PathTracing {
+            samples: 24,
+            albedo,
+            lights: vec![light(at(cosine_of_light, 1.0))],
+            ..PathTracing::default()
+        };
+        let found = radiance(path, 60.0, cosine);
+        assert_near(
+            &format!("{albedo} {cosine} {cosine_of_light}"),
+            found,
+            wanted,
+        );
+    }
+}
+
+/// Where values rise evenly all collisions are with surfaces across the rise (Lambert): n . l in place of pi p(c).
+#[test]
+fn surfaces_reflect_by_the_cosine_to_their_normal() {
+    let volume = layer(|z| z);
+    let function = matter([1.0, 0.5, 0.25], &[(0.0, 2.0)]);
+    let (mu, mu0, depth) = (0.6, 0.8, 2.0);
+    let camera = eye(at(mu, 0.0));
+    let settings = settings(PathTracing {
+        samples: 8,
+        bounces: Some(1),
+        surface: 1e4,
+        lights: vec![light(at(mu0, 2.0))],
+        ..PathTracing::default()
+    });
+    let scene = scene(&volume, &function, &camera, &settings, [48; 2]);
+    let picture = drawn(&scene);
+    // Half a voxel at each face lies beyond the outermost centres, where a tap finds the edge: half the gradient.
+    for (channel, albedo) in [1.0, 0.5, 0.25].into_iter().enumerate() {
+        let lost = 1.0 - (-depth * (1.0 / mu + 1.0 / mu0) as f64).exp();
+        let wanted = albedo * mu0 * mu0 / (mu + mu0) * lost;
+        assert_near("surface", mean(&picture, channel), wanted);
+    }
+}
+
+/// A light as wide as a cap of the sky gives what the mean over the cap gives.
+#[test]
+fn a_wide_light_is_the_mean_of_its_directions() {
+    let (mu, depth, degrees) = (0.6, 2.0, 60.0_f64);
+    let path = PathTracing {
+        samples: 16,
+        bounces: Some(1),
+        lights: vec![light(DVec3::Z)],
+        light_size_degrees: degrees,
+        ..PathTracing::default()
+    };
+    let found = radiance(path, depth, mu);
+    let least = (0.5 * degrees).to_radians().cos();
+    let of = |mu0: f64| 0.25 * mu0 / (mu + mu0) * (1.0 - (-depth * (1.0 / mu + 1.0 / mu0)).exp());
+    let parts = (0..1000).map(|i| of(least + (1.0 - least) * (f64::from(i) + 0.5) / 1000.0));
+    assert_near("cap", found, parts.sum::<f64>() / 1000.0);
+}
+
+/// Blobs in a box whose voxels are no cubes.
+fn blobs() -> Volume {
+    let place = DAffine3::from_scale(dvec3(1.0, 0.8, 1.3));
+    volume_of([40, 36, 28], place, |p| {
+        ((0.2 * p.x).sin() + (0.25 * p.y + 1.0).sin() + (0.22 * p.z).cos()) / 3.0
+    })
+}
+
+fn around_blobs() -> Camera {
+    Camera {
+        eye: dvec3(70.0, 50.0, 60.0),
+        target: dvec3(20.0, 14.0, 18.0),
+        up: DVec3::Y,
+        projection: Projection::Perspective { fov_degrees: 40.0 },
+        zoom: 1.0,
+    }
+}
+
+/// White matter in a white sky cannot be told from it: each path brings 1, to the bit.
+#[test]
+fn white_matter_in_an_even_sky_is_as_bright_as_the_sky() {
+    let (volume, camera) = (blobs(), around_blobs());
+    let function = matter([1.0; 3], &[(0.0, 0.0), (0.4, 1.5), (1.0, 0.2)]);
+    for (phase, surface) in [
+        (Phase::Isotropic, 0.0),
+        (Phase::HenyeyGreenstein(0.9), 0.0),
+        (Phase::Rayleigh, 3.0),
+    ] {
+        let settings = Settings {
+            clip_planes: vec![ClipPlane {
+                normal: dvec3(1.0, 0.3, 0.2),
+                offset: 15.0,
+            }],
+            ..settings(PathTracing {
+                samples: 4,
+                phase,
+                surface,
+                sky: [1.0; 3],
+                ..PathTracing::default()
+            })
+        };
+        let scene = scene(&volume, &function, &camera, &settings, [60, 50]);
+        let reference = offscreen::reference::render::<f64>(&scene).expect("a picture");
+        let pictures = [drawn(&scene), reference];
+        for picture in pictures {
+            let met = picture.pixels.iter().filter(|pixel| pixel[3] > 0.0);
+            assert!(met.clone().count() > 500);
+            for &[r, g, b, alpha] in met {
+                assert_eq!([r, g, b], [alpha; 3], "{phase:?}");
+            }
+        }
+    }
+}
+
+fn lit() -> PathTracing {
+    PathTracing {
+        samples: 4,
+        albedo: 0.9,
+        phase: Phase::TwoLobes {
+            part: 0.6,
+            g: [0.7, -0.3],
+        },
+        surface: 2.0,
+        sky: [0.2, 0.3, 0.5],
+        lights: vec![light(dvec3(1.0, 2.0, 0.5)), light(dvec3(-1.0, 0.2, 1.0))],
+        light_size_degrees: 8.0,
+        ..PathTracing::default()
+    }
+}
+
+/// Path by path: the same random numbers make the same collisions, but where rounding turns a choice.
+#[test]
+fn the_shader_traces_the_paths_of_its_reference() {
+    let (volume, camera) = (blobs(), around_blobs());
+    let function = matter([0.9, 0.7, 0.4], &[(0.0, 0.0), (0.4, 1.5), (1.0, 0.2)]);
+    let settings = Settings {
+        // Cells change which numbers are drawn.
+        skip: false,
+        conformance: true,
+        ..settings(lit())
+    };
+    let scene = scene(&volume, &function, &camera, &settings, [60, 50]);
+    let picture = drawn(&scene);
+    let reference = offscreen::reference::render::<f32>(&scene).expect("a picture");
+    let pairs = || picture.pixels.iter().zip(&reference.pixels);
+    let parted = pairs().filter(|(a, b)| (0..4).any(|c| (a[c] - b[c]).abs() > 1e-3));
+    let share = parted.count() as f64 / picture.pixels.len() as f64;
+    println!("{share} of the pixels have a path that parts");
+    assert!(share < 0.02, "{share}");
+    let met = pairs().filter(|(a, _)| a[3] > 0.0).count();
+    assert!(met > 1000, "{met}");
+}
+
+#[test]
+fn empty_space_changes_paths_and_no_mean() {
+    let (volume, camera) = (blobs(), around_blobs());
+    let function = matter([0.9, 0.7, 0.4], &[(0.1, 0.0), (0.4, 1.5), (1.0, 0.2)]);
+    let pictures = [true, false].map(|skip| {
+        let settings = Settings {
+            skip,
+            ..settings(PathTracing {
+                samples: 16,
+                ..lit()
+            })
+        };
+        drawn(&scene(&volume, &function, &camera, &settings, [60, 50]))
+    });
+    let [skipped, whole] = pictures;
+    assert!(skipped.pixels != whole.pixels);
+    for channel in 0..4 {
+        let [[a, of_a], [b, of_b]] = [mean_of(&skipped, channel), mean_of(&whole, channel)];
+        let error = of_a.hypot(of_b);
+        assert!((a - b).abs() < 4.0 * error, "{channel}: {a} {b} +- {error}");
+        assert!(error < 0.01 * a, "{channel}: {error} of {a}");
+    }
+}
+
+/// The mean of a picture whose pixels differ: the error by that of neighbours.
+fn mean_of(picture: &Picture, channel: usize) -> [f64; 2] {
+    let numbers: Vec<_> = picture
+        .pixels
+        .iter()
+        .map(|p| f64::from(p[channel]))
+        .collect();
+    let n = numbers.len() as f64;
+    let variance = numbers
+        .windows(2)
+        .map(|pair| 0.5 * (pair[0] - pair[1]).powi(2));
+    let variance = variance.sum::<f64>() / (n - 1.0);
+    [numbers.iter().sum::<f64>() / n, (variance / n).sqrt()]
+}
+
+/// Pictures of parts of the paths add up, however the work is cut.
+#[test]
+fn the_picture_does_not_depend_on_how_the_work_is_cut() {
+    let (volume, camera) = (blobs(), around_blobs());
+    let function = matter([0.9, 0.7, 0.4], &[(0.1, 0.0), (0.4, 1.5), (1.0, 0.2)]);
+    let device = device();
+    let mut renderer = Renderer::new(device, &volume).expect("a renderer");
+    let mut part = |first_sample, samples, ms| {
+        renderer.set_submission_ms(ms);
+        let settings = settings(PathTracing {
+            first_sample,
+            samples,
+            ..lit()
+        });
+        let scene = scene(&volume, &function, &camera, &settings, [60, 50]);
+        renderer
+            .render(&scene, &[])
+            .expect("a picture")
+            .picture
+            .pixels
+    };
+    let [all, again, pieces] = [f64::INFINITY, 100.0, 0.0].map(|ms| part(0, 6, ms));
+    assert!(all == again && all == pieces);
+    let [first, rest] = [part(0, 2, 100.0), part(2, 4, 100.0)];
+    for ((all, a), b) in all.iter().zip(&first).zip(&rest) {
+        for c in 0..4 {
+            let sum = (2.0 * f64::from(a[c]) + 4.0 * f64::from(b[c])) / 6.0;
+            assert!((f64::from(all[c]) - sum).abs() < 1e-6);
+        }
+    }
+    let other = {
+        let settings = settings(PathTracing {
+            samples: 6,
+            seed: 1,
+            ..lit()
+        });
+        let scene = scene(&volume, &function, &camera, &settings, [60, 50]);
+        renderer
+            .render(&scene, &[])
+            .expect("a picture")
+            .picture
+            .pixels
+    };
+    assert!(all != other);
+}
+
+/// Without scattering a path brings the colour of its first collision: the composite.
+#[test]
+fn without_bounces_the_picture_is_the_composite() {
+    let (volume, camera) = (blobs(), around_blobs());
+    let function = matter([0.9, 0.7, 0.4], &[(0.1, 0.0), (0.4, 1.5), (1.0, 0.2)]);
+    let paths = settings(PathTracing {
+        samples: 32,
+        bounces: Some(0),
+        ..PathTracing::default()
+    });
+    let rays = Settings {
+        samples_per_voxel: 16.0,
+        rays_per_side: 2,
+        ..Settings::default()
+    };
+    let pictures = [paths, rays]
+        .map(|settings| drawn(&scene(&volume, &function, &camera, &settings, [60, 50])));
+    let [paths, rays] = pictures;
+    for channel in 0..4 {
+        // Both at the same pixels: the error is that of the paths, of a pixel sqrt(p (1 - p) / 32) at most.
+        let pairs = || paths.pixels.iter().zip(&rays.pixels);
+        let n = pairs().count() as f64;
+        let off = pairs().map(|(a, b)| f64::from(a[channel] - b[channel]));
+        let variance = pairs().map(|(_, b)| f64::from(b[3] * (1.0 - b[3])) / 32.0);
+        let (off, error) = (off.sum::<f64>() / n, variance.sum::<f64>().sqrt() / n);
+        assert!(
+            off.abs() < 4.0 * error + 2e-4,
+            "{channel}: {off} +- {error}"
+        );
+        assert!(error < 2e-3);
+    }
+}
