@@ -203,7 +203,7 @@ fn normal_at(place: vec3<f32>, direction: vec3<f32>, u: f32) -> vec3<f32> {
         volume_value(place + z) - volume_value(place - z),
     );
     let gradient = (frame.voxel_from_world * slope).xyz;
-    let steepness = length(gradient);
+    let steepness = sqrt(dot(gradient, gradient));
     if steepness <= frame.flat_gradient || u >= 1.0 - exp(-frame.path_surface * steepness) {
         return vec3(0.0);
     }

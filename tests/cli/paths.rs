@@ -75,7 +75,7 @@ fn what_paths_do_not_go_with_is_refused_by_name() {
         ("--with l.nrrd", "one volume of numbers"),
         ("--opacity-from l.nrrd", "one volume of numbers"),
         ("--crop 0,4,0,8,0,8 --cut-faces", "cut faces"),
-        ("--flow stream", "--flow"),
+        ("--flow stream --aa 1", "--flow"),
         ("--phase mie", "hg:G"),
         ("--phase hg:1", "-0.99 to 0.99"),
         ("--albedo 2", "light would grow"),

@@ -367,7 +367,7 @@ fn empty_space_changes_paths_and_no_mean() {
         let [[a, of_a], [b, of_b]] = [mean_of(&skipped, channel), mean_of(&whole, channel)];
         let error = of_a.hypot(of_b);
         assert!((a - b).abs() < 4.0 * error, "{channel}: {a} {b} +- {error}");
-        assert!(error < 0.01 * a, "{channel}: {error} of {a}");
+        assert!(error < 0.02 * a, "{channel}: {error} of {a}");
     }
 }
 
