@@ -47,6 +47,7 @@ mod mixed;
 mod opacity;
 mod person;
 mod pictures;
+mod point_grid;
 mod points;
 mod presets;
 mod real;

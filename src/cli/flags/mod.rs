@@ -27,6 +27,7 @@ mod numbers;
 mod occlusion;
 mod opacity;
 mod picture;
+mod point_grid;
 mod points;
 mod sampling;
 mod sampling_numbers;
@@ -59,6 +60,7 @@ pub use modes::ModeFlags;
 pub use numbers::{Background, Numbers, Size, finite, positive};
 pub use opacity::OpacityFlags;
 pub use picture::PictureFlags;
+pub use point_grid::{PointGrid, PointGridFlags};
 pub use points::PointLookFlags;
 pub use sampling::{Depth, SamplingFlags};
 pub use section::SectionFlags;
@@ -111,6 +113,8 @@ pub struct SceneFlags {
     pub map: MapFlags,
     #[command(flatten)]
     pub point_look: PointLookFlags,
+    #[command(flatten)]
+    pub point_grid: PointGridFlags,
     #[command(flatten)]
     pub light: LightFlags,
     #[command(flatten)]
