@@ -42,7 +42,7 @@ use std::{
     stratavox convert phantom:storm,n=32 -o updraft.vtp --flow stream --flow-seeds 'where:w>5,100'\n  \
     stratavox convert phantom:storm,n=32 -o tubes.glb --flow stream\n  \
     stratavox convert phantom:storm,n=32 -o wind.csv --flow stream\n  \
-    stratavox convert wind.csv -o speed.nrrd --point-columns value=value --grid 48x48x24 --interpolate idw",
+    stratavox convert wind.csv -o speed.nrrd --point-columns value=value --grid 48x48x24",
     mut_arg("flow", |flow| flow.conflicts_with_all(["crop", "type", "window", "uncompressed", "iso", "resume"]))
 )]
 pub struct Convert {

@@ -188,7 +188,7 @@ fn what_makes_no_grid_is_refused_by_name() {
         ("p.csv --interpolate cubic", &["cubic", "shepard"]),
         ("p.csv --reach 0", &["--reach"]),
         ("p.csv --anisotropy 0", &["--anisotropy"]),
-        ("phantom:sphere,n=8 --grid auto", &["--grid"]),
+        ("phantom:sphere,n=8 --grid auto", &["scattered points"]),
     ] {
         folder
             .run(&format!("convert {words} -o q.nrrd"))

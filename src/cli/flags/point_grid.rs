@@ -37,7 +37,8 @@ pub struct PointGridFlags {
     #[arg(long, value_name = "LENGTH", value_parser = positive, help_heading = "Scattered points")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reach: Option<f64>,
-    /// How many times heights count in distances between points [default: as they are exaggerated]
+    /// How many times heights count in distances between points [default: --exaggerate, or on the Earth what the box of the points
+    /// would be exaggerated by]
     #[arg(long, value_name = "FACTOR", value_parser = positive, help_heading = "Scattered points")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub anisotropy: Option<f64>,
@@ -85,7 +86,7 @@ impl PointGrid {
             })
     }
 
-    /// By the words, or as a picture of the points is exaggerated.
+    /// By the words, or as the box of the points would be exaggerated.
     fn anisotropy(&self, file: &PointFile) -> f64 {
         let given = self.flags.anisotropy.or(self.exaggerate);
         given.unwrap_or_else(|| match file.header().is_earth {

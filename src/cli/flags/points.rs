@@ -105,7 +105,9 @@ impl SceneFlags {
                 "add it",
             ));
         }
-        if look.points_as.is_some() && !self.input.are_points() {
+        // Of thumbnails the input is not known yet.
+        let is_known = self.input.path.is_some();
+        if look.points_as.is_some() && is_known && !self.input.are_points() {
             return Err(Error::usage(
                 "--points-as is for scattered points, and the input is a volume",
                 "leave it out",

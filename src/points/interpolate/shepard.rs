@@ -30,7 +30,7 @@ const BEYOND: f64 = 1.1;
 /// Widths of its range that a quadratic may leave it by.
 const WIDER: f64 = 2.0;
 /// Points that a thread fits at once.
-const BLOCK: usize = 256;
+const BLOCK: usize = 32;
 
 /// Those of all points.
 #[derive(Clone, Debug)]
