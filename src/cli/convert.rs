@@ -148,10 +148,10 @@ impl Convert {
     /// Scattered points become a volume by interpolation.
     fn put_points_on_grid(&mut self) -> Result<(), Error> {
         if self.input.are_points() {
-            self.input.on_grid = Some(PointGrid {
+            self.input.on_grid = Some(Box::new(PointGrid {
                 flags: self.point_grid.clone(),
                 exaggerate: None,
-            });
+            }));
         } else if self.point_grid.are_given() {
             return Err(Error::usage(
                 "--grid, --interpolate, --reach and --anisotropy are for scattered points, and the input is a volume",

@@ -102,7 +102,7 @@ pub struct InputFlags {
     /// Scattered points are interpolated.
     #[arg(skip)]
     #[serde(skip)]
-    pub on_grid: Option<PointGrid>,
+    pub on_grid: Option<Box<PointGrid>>,
 }
 
 #[allow(

@@ -133,10 +133,10 @@ impl SceneFlags {
             }
             PointsWord::Spheres => {}
             PointsWord::Grid => {
-                self.input.on_grid = Some(PointGrid {
+                self.input.on_grid = Some(Box::new(PointGrid {
                     flags: self.point_grid.clone(),
                     exaggerate: self.camera.exaggerate,
-                });
+                }));
             }
         }
     }

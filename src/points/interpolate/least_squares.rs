@@ -141,12 +141,20 @@ mod tests {
 
     #[test]
     fn of_columns_that_are_alike_the_preferred_ones_are_taken() {
-        let rows = [0.5, 1.0, 2.0].map(|t| ([t, 1.0, 1e3 * t], 3.0 * t));
-        for (preferred, wanted) in [(1, [3.0, 0.0, 0.0]), (0, [3.0, 0.0, 0.0])] {
+        // The second is the sum of the first and the third.
+        let rows = [
+            ([1.0, 1.0, 0.0], 1.0),
+            ([0.0, 1.0, 1.0], 1.0),
+            ([0.0, 0.0, 0.0], 0.0),
+        ];
+        for (preferred, wanted) in [(2, [0.0, 1.0, 0.0]), (1, [1.0, 0.0, 1.0])] {
             let found = solved(&rows, preferred);
             assert!(found.smallest_rest < 1e-10);
             for (k, wanted) in wanted.into_iter().enumerate() {
-                assert!((found.coefficients[k] - wanted).abs() < 1e-12, "{found:?}");
+                assert!(
+                    (found.coefficients[k] - wanted).abs() < 1e-12,
+                    "{preferred}: {found:?}"
+                );
             }
         }
     }

@@ -110,6 +110,13 @@ fn grids_hold_their_points_and_those_of_nobody_are_small() {
             }
         }
     }
+    // One point so far away that half of the mean distance makes more voxels than there may be.
+    let mut places = points().places;
+    places.push(dvec3(900.0, 0.5, 0.1));
+    let lone = Points::new(places, vec![1.0; 301], None, None).expect("points");
+    let lone = Interpolation::new(&lone, &of(Method::Idw)).expect("a field");
+    let grid = lone.grid(GridSize::Auto, 1 << 30).expect("a grid");
+    assert_eq!(grid.dims[0], 256, "{}", lone.mean_distance());
     let far = Interpolation::new(&points(), &of(Method::Density)).expect("a field");
     let wide = far.grid(GridSize::Auto, 1 << 30).expect("a grid");
     let corner = wide.world_from_voxel.transform_point3(DVec3::splat(0.5));
