@@ -18,7 +18,7 @@
 //! |---|---|---|
 //! | 0 | `shaders`, `real`, `ray`, `blue_noise`, `lattice`, [`color`], `fence`, `named` | arithmetic shared with the shaders, free of Vulkan |
 //! | 1 | [`gpu`], [`volume`], [`transfer`], [`camera`], [`picture`], [`mesh`], `figure` | Vulkan objects, or data; never both |
-//! | 1 | [`points`] | scattered points, and a volume that stands for them |
+//! | 1 | [`points`] | scattered points, a volume that stands for them, and interpolation |
 //! | 1 | [`flow`] | velocities, and lines that follow them |
 //! | 1 | [`geometry`] | opaque lines and spheres, and what a camera sees of them |
 //! | 2 | [`resident`], `isosurface`, `format` | data put on a device; a surface in a volume; bytes of files turned into a [`volume::Source`] |

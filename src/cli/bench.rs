@@ -101,7 +101,7 @@ impl Bench {
         if scene.input.path.is_none() {
             scene.input.path = Some(DEFAULT_INPUT.to_owned());
         }
-        scene.splat_points();
+        scene.choose_for_points();
         let mut inputs = scene_file::inputs(&scene, self.scene_file.as_deref());
         inputs.extend(self.cameras.clone());
         let files = self

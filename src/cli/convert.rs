@@ -2,7 +2,7 @@
 
 use super::{
     Error,
-    flags::{InputFlags, Numbers},
+    flags::{InputFlags, Numbers, PointGrid, PointGridFlags},
     flow::FlowFlags,
     output,
     progress::{Progress, ProgressWord},
@@ -40,7 +40,9 @@ use std::{
     stratavox convert phantom:head -o head.svb --resume\n  \
     stratavox convert phantom:head,n=64 -o skull.ply --iso 300\n  \
     stratavox convert phantom:storm,n=32 -o updraft.vtp --flow stream --flow-seeds 'where:w>5,100'\n  \
-    stratavox convert phantom:storm,n=32 -o tubes.glb --flow stream",
+    stratavox convert phantom:storm,n=32 -o tubes.glb --flow stream\n  \
+    stratavox convert phantom:storm,n=32 -o wind.csv --flow stream\n  \
+    stratavox convert wind.csv -o speed.nrrd --point-columns value=value --grid 48x48x24",
     mut_arg("flow", |flow| flow.conflicts_with_all(["crop", "type", "window", "uncompressed", "iso", "resume"]))
 )]
 pub struct Convert {
@@ -77,6 +79,8 @@ pub struct Convert {
     #[arg(long, requires = "iso", help_heading = "Surface")]
     closed: bool,
     #[command(flatten)]
+    point_grid: PointGridFlags,
+    #[command(flatten)]
     flow: FlowFlags,
     /// Go on with a .svb where a run before was stopped; the file is that of one that was not
     #[arg(long, conflicts_with = "iso")]
@@ -103,7 +107,8 @@ fn voxel_type(word: &str) -> Result<VoxelType, String> {
 
 impl Convert {
     /// Reads and writes.
-    pub fn run(self, gate: &Gate) -> Result<(), Error> {
+    pub fn run(mut self, gate: &Gate) -> Result<(), Error> {
+        self.put_points_on_grid()?;
         if let Some(word) = self.flow.flow {
             self.flow.check(&self.output)?;
             let inputs: Vec<PathBuf> = self.input.file().map(Path::to_owned).into_iter().collect();
@@ -136,6 +141,22 @@ impl Convert {
         };
         for note in &written.notes {
             progress.note(note);
+        }
+        Ok(())
+    }
+
+    /// Scattered points become a volume by interpolation.
+    fn put_points_on_grid(&mut self) -> Result<(), Error> {
+        if self.input.are_points() {
+            self.input.on_grid = Some(Box::new(PointGrid {
+                flags: self.point_grid.clone(),
+                exaggerate: None,
+            }));
+        } else if self.point_grid.are_given() {
+            return Err(Error::usage(
+                "--grid, --interpolate, --reach and --anisotropy are for scattered points, and the input is a volume",
+                "leave them out",
+            ));
         }
         Ok(())
     }
@@ -293,6 +314,7 @@ impl Convert {
         let header = format!("{header:?}");
         Ok(json!({
             "input": input,
+            "point_grid": serde_json::to_value(&self.point_grid).expect("plain data as JSON"),
             "file": stamp_of(self.input.file())?,
             "header": hash_of(|hasher| hasher.write(header.as_bytes())),
             "crop": self.crop.map(|crop| crop.to_string()),

@@ -17,7 +17,7 @@ impl Points {
     /// Corners of the box of [`Self::binned`], in the world.
     pub fn bounds(&self) -> [DVec3; 2] {
         let widest = self.stds.iter().copied().fold(0.0, f32::max);
-        let [low, high] = distances::bounds(&self.places);
+        let [low, high] = distances::bounds(self.places.iter().copied());
         let around = DVec3::splat(REACH_STDS * f64::from(widest));
         [low - around, high + around]
     }

@@ -26,7 +26,7 @@ const MOST_CELLS: f64 = 1024.0;
 
 /// The formula above; of points that all lie at one place, 1.
 pub(super) fn default_std(places: &[DVec3]) -> f64 {
-    let [low, high] = bounds(places);
+    let [low, high] = bounds(places.iter().copied());
     let extent = high - low;
     let longest = extent.max_element();
     if longest <= 0.0 {
@@ -100,9 +100,9 @@ fn shell_of(home: IVec3, shell: i32, last: IVec3) -> impl Iterator<Item = IVec3>
 }
 
 /// Corners of the box around places.
-pub(super) fn bounds(places: &[DVec3]) -> [DVec3; 2] {
+pub(super) fn bounds(places: impl IntoIterator<Item = DVec3>) -> [DVec3; 2] {
     let start = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-    places.iter().fold(start, |[low, high], &place| {
+    places.into_iter().fold(start, |[low, high], place| {
         [low.min(place), high.max(place)]
     })
 }
@@ -136,7 +136,7 @@ mod tests {
             };
             let half = 0.5 * f64::from(median(places.iter().map(brute).collect()));
             // 400 are few.
-            let [low, high] = bounds(&places);
+            let [low, high] = bounds(places.iter().copied());
             assert_eq!(
                 default_std(&places),
                 half.max((high - low).length() / 400.0)

@@ -4,10 +4,14 @@
 //! x_s, f_s, h_s, m_s        place, value, standard deviation, weight of point s
 //! ```
 //!
+//! [`interpolate`] makes a field of them.
+//!
 //! Knows nothing of files, and nothing of Vulkan.
 
 mod binned;
 mod distances;
+pub mod interpolate;
+mod neighbours;
 
 use glam::DVec3;
 

@@ -290,8 +290,9 @@ fn every_command_of_the_page_of_annotation_runs() {
 #[test]
 fn every_command_of_the_page_of_weather_runs() {
     let (folder, _, lines) = run_page("docs/weather.md");
-    assert_eq!(lines, 4);
-    for name in ["vapor.png", "wind.png", "storm.gif", "updraft.vtp"] {
+    assert_eq!(lines, 7);
+    let names = ["vapor.png", "wind.png", "storm.gif", "updraft.vtp"];
+    for name in names.into_iter().chain(["speed.png", "speed.nrrd"]) {
         assert!(folder.path(name).exists(), "{name}");
     }
 }

@@ -48,6 +48,7 @@ mod opacity;
 mod paths;
 mod person;
 mod pictures;
+mod point_grid;
 mod points;
 mod presets;
 mod real;

@@ -93,7 +93,7 @@ pub fn measured(bench: &Bench, scene: &SceneFlags) -> Result<String, Error> {
         progress.stage("measure", at, total);
         let mut scene = scene.clone();
         scene.input.path = Some((*input).clone());
-        scene.splat_points();
+        scene.choose_for_points();
         let base = Settings {
             skip: !bench.no_skip,
             ..scene.settings(Depth::Eight)?

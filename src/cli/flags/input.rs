@@ -2,7 +2,7 @@
 
 use super::{
     super::{memory, untrusted},
-    Component, Error, time,
+    Component, Error, PointGrid, time,
 };
 use crate::cli::stdin::{self, STANDARD};
 use crate::look::first_variable;
@@ -99,6 +99,10 @@ pub struct InputFlags {
     #[arg(long, help_heading = "Input")]
     #[serde(skip)]
     pub untrusted: bool,
+    /// Scattered points are interpolated.
+    #[arg(skip)]
+    #[serde(skip)]
+    pub on_grid: Option<Box<PointGrid>>,
 }
 
 #[allow(
@@ -197,7 +201,11 @@ impl InputFlags {
             return Ok(source);
         }
         if self.holds_points() {
-            return Ok(Box::new(self.open_points(limits)?));
+            let file = self.open_points(limits)?;
+            return Ok(Box::new(match &self.on_grid {
+                Some(grid) => grid.volume_of(file, self)?,
+                None => file,
+            }));
         }
         let spooled = match path {
             STANDARD => Some(stdin::file(limits.max_bytes)?),

@@ -44,9 +44,9 @@ impl SceneFlags {
 
     /// `auto` unless a flag or a scene file says otherwise; pictures for conformance are `plain`.
     ///
-    /// Scattered points are splatted, whatever the look is.
+    /// Scattered points are splatted, or what a word says, whatever the look is.
     pub fn default_to_auto(&mut self) {
-        self.splat_points();
+        self.choose_for_points();
         self.set_cinematic();
         self.look.get_or_insert(match self.sampling.conformance {
             true => Look::Plain,

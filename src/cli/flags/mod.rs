@@ -28,6 +28,7 @@ mod occlusion;
 mod opacity;
 mod paths;
 mod picture;
+mod point_grid;
 mod points;
 mod sampling;
 mod sampling_numbers;
@@ -61,6 +62,7 @@ pub use numbers::{Background, Numbers, Size, finite, positive};
 pub use opacity::OpacityFlags;
 pub use paths::PathFlags;
 pub use picture::PictureFlags;
+pub use point_grid::{PointGrid, PointGridFlags};
 pub use points::PointLookFlags;
 pub use sampling::{Depth, SamplingFlags};
 pub use section::SectionFlags;
@@ -113,6 +115,8 @@ pub struct SceneFlags {
     pub map: MapFlags,
     #[command(flatten)]
     pub point_look: PointLookFlags,
+    #[command(flatten)]
+    pub point_grid: PointGridFlags,
     #[command(flatten)]
     pub light: LightFlags,
     #[command(flatten)]

@@ -1,7 +1,7 @@
 //! Scattered points as an input.
 
 use super::numbers::positive;
-use super::{Error, InputFlags, PHANTOM, SceneFlags};
+use super::{Error, InputFlags, PHANTOM, PointGrid, SceneFlags};
 use crate::cli::stdin::{self, STANDARD};
 use crate::format::points::{self, PointColumns, PointFile};
 use crate::technique::Technique;
@@ -19,6 +19,8 @@ pub enum PointsWord {
     Splats,
     /// A sphere, larger where its value is
     Spheres,
+    /// A volume between them, by --interpolate
+    Grid,
 }
 
 /// The words, none of them filled in.
@@ -46,8 +48,8 @@ impl InputFlags {
         self.points || self.point_columns.is_some()
     }
 
-    /// True where they are splatted.
-    pub fn splats_points(&self) -> bool {
+    /// True where they are scattered points in a file, and no built-in volume.
+    pub fn are_points(&self) -> bool {
         let is_phantom = self
             .path
             .as_deref()
@@ -97,7 +99,15 @@ impl SceneFlags {
                 "leave it out",
             ));
         }
-        if look.points_as.is_some() && !self.input.splats_points() {
+        if self.point_grid.are_given() && look.points_as != Some(PointsWord::Grid) {
+            return Err(Error::usage(
+                "--grid, --interpolate, --reach and --anisotropy need --points-as grid",
+                "add it",
+            ));
+        }
+        // Of thumbnails the input is not known yet.
+        let is_known = self.input.path.is_some();
+        if look.points_as.is_some() && is_known && !self.input.are_points() {
             return Err(Error::usage(
                 "--points-as is for scattered points, and the input is a volume",
                 "leave it out",
@@ -108,14 +118,26 @@ impl SceneFlags {
 
     /// True where scattered points are spheres.
     pub fn points_are_spheres(&self) -> bool {
-        self.point_look.points_as == Some(PointsWord::Spheres) && self.input.splats_points()
+        self.point_look.points_as == Some(PointsWord::Spheres) && self.input.are_points()
     }
 
-    /// Splatting, where the input is scattered points and no word takes another technique.
-    pub fn splat_points(&mut self) {
-        if self.input.splats_points() && !self.points_are_spheres() {
-            self.sampling.of_points = true;
-            self.sampling.technique.get_or_insert(Technique::Splat);
+    /// What scattered points are drawn by: splatting where no word takes another technique, or a grid.
+    pub fn choose_for_points(&mut self) {
+        if !self.input.are_points() {
+            return;
+        }
+        match self.point_look.points_as.unwrap_or_default() {
+            PointsWord::Splats => {
+                self.sampling.of_points = true;
+                self.sampling.technique.get_or_insert(Technique::Splat);
+            }
+            PointsWord::Spheres => {}
+            PointsWord::Grid => {
+                self.input.on_grid = Some(Box::new(PointGrid {
+                    flags: self.point_grid.clone(),
+                    exaggerate: self.camera.exaggerate,
+                }));
+            }
         }
     }
 }

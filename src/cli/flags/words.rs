@@ -3,6 +3,7 @@
 use crate::{
     named::Named,
     picture::ColorSpace,
+    points::interpolate::Method,
     technique::{Filter, FilterBy, Lattice, Mode, Order, Technique, splat::Sheets},
 };
 use clap::{ValueEnum, builder::PossibleValue};
@@ -50,6 +51,7 @@ by_name! {
     Order: Self::ALL,
     ColorSpace: Self::ALL,
     Sheets: Self::ALL,
+    Method: Self::ALL,
 }
 
 /// Takes a name while the deserializer stands at it: what is wrong with it has the line that it is on.

@@ -374,7 +374,7 @@ impl<'a> Reading<'a> {
     fn read_noting(&self, item: &Item, progress: &Progress) -> Result<Read<'a>, Error> {
         let mut scene = self.batch.scene.clone();
         scene.input.path = Some(item.input.clone());
-        scene.splat_points();
+        scene.choose_for_points();
         if is_without_layout(&item.input) {
             scene.input.raw = None;
         }

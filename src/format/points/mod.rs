@@ -1,7 +1,8 @@
 //! Files of scattered points to [`PointFile`]s.
 //!
 //! ```text
-//! names, rows -> which column is which -> numbers of rows -> places in the world -> Points -> a volume of their means
+//! names, rows -> which column is which -> numbers of rows -> places in the world -> Points -> a volume of their means, or by
+//! interpolation
 //! ```
 //!
 //! | file | points |
@@ -15,6 +16,7 @@
 
 mod columns;
 mod gathered;
+mod gridded;
 mod npy;
 mod numbers;
 mod place;

@@ -13,14 +13,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Scattered points out of a file. As a [`Source`] it is the volume of means of [`Points::binned`], whose voxels without
-/// a point are NaN.
+/// a point are NaN, or that of [`Self::interpolated`].
 #[derive(Debug)]
 pub struct PointFile {
     path: PathBuf,
-    header: Header,
-    notes: Vec<String>,
-    points: Arc<Points>,
-    voxels: Vec<f32>,
+    pub(super) header: Header,
+    pub(super) notes: Vec<String>,
+    pub(super) points: Arc<Points>,
+    pub(super) voxels: Vec<f32>,
     max_bytes: u64,
 }
 
