@@ -51,6 +51,7 @@ pub const FEATURES: &[Feature] = &[
     // Scattered points are splats without a word.
     of(VOLUMES, feature("technique", "splats", "--technique splat")),
     feature("mode", "maximum", "--mode mip"),
+    feature("mode", "mean", "--mode average"),
     feature("mode", "X-ray", "--mode xray"),
     feature("mode", "local maximum", "--mode lmip"),
     feature("mode", "MIDA", "--mode mida"),
@@ -131,6 +132,7 @@ pub const FEATURES: &[Feature] = &[
         "thick section",
         "--section axial --thickness {thick}",
     ),
+    feature("side", "view from the left", "--view left"),
     feature(
         "projection",
         "orthographic view",
@@ -156,9 +158,12 @@ pub const FEATURES: &[Feature] = &[
 ];
 
 /// Pairs whose picture is that of the second alone, since it has the first without a word: fields of the weather are
-/// pre-integrated.
+/// pre-integrated, and sections show means.
 pub const GIVEN: &[[&str; 2]] = &[
     ["pre-integrated classification", "lines of the wind"],
     ["pre-integrated classification", "lines of the map"],
     ["pre-integrated classification", "film of all times"],
+    ["mean", "section"],
+    ["mean", "sections of three directions"],
+    ["mean", "thick section"],
 ];

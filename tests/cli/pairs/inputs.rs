@@ -100,7 +100,9 @@ pub fn write(folder: &Folder) {
             let distance = f64::from(x * x + y * y + z * z).sqrt();
             [(60.0 * (11.0 - distance)).clamp(0.0, 255.0) as u8]
         };
-        folder.file(&format!("other{place}.nrrd"), nrrd(center, side, other));
+        // On a grid of its own: no voxel of it is one of another volume.
+        let other = nrrd(center.map(|c| c + 3.0), side, other);
+        folder.file(&format!("other{place}.nrrd"), other);
     }
     let colors = |[x, y, z]: [i32; 3]| {
         let distance = f64::from(x * x + y * y + z * z).sqrt();

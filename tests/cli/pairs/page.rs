@@ -15,8 +15,7 @@ each pair on a volume of 20^3 voxels; `tests/cli/pairs` holds this page against 
 empty and that both features change it. [matrix.md](matrix.md) has every feature in every technique, mode and filter.
 
 What holds without a flag is no feature: ray casting, composites, the linear filter and perspective are in all pairs without a flag
-for them. The modes `minip` and `average` go with what `mip` goes with,
-and `attenuated-mip` with what `lmip` goes with.
+for them. The mode `minip` goes with what `mip` goes with, and `attenuated-mip` with what `lmip` goes with.
 ";
 
 const LEGEND: &str = "

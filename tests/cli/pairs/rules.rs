@@ -53,7 +53,7 @@ const fn of(features: &'static [&'static str], rule: Rule) -> Rule {
     }
 }
 
-const PROJECTIONS: &[&str] = &["maximum", "X-ray", "local maximum"];
+const PROJECTIONS: &[&str] = &["maximum", "mean", "X-ray", "local maximum"];
 const POINTS: &[&str] = &["scattered points"];
 const SPHERES: &[&str] = &["scattered points as spheres"];
 
@@ -74,9 +74,19 @@ pub const RULES: &[Rule] = &[
         "--section takes its samples on the cut",
         "a section has its samples on the plane, and those of the other lie elsewhere",
     ),
-    no_meaning(
-        "cannot be used with '--section <PLANE>'",
-        "a section is orthographic already",
+    of(
+        &["orthographic view"],
+        no_meaning(
+            "cannot be used with '--section <PLANE>'",
+            "a section is orthographic already",
+        ),
+    ),
+    of(
+        &["view from the left"],
+        no_meaning(
+            "cannot be used with '",
+            "a section is seen from straight in front of its plane",
+        ),
     ),
     no_meaning(
         "--section looks straight at its plane",
@@ -170,10 +180,17 @@ pub const RULES: &[Rule] = &[
     ),
     of(
         &["MIDA"],
+        no_meaning(
+            "empty space by an octree or by runs is for composite, not for mode mida",
+            "a sample that nobody sees still clears what lies before it where its value is a new maximum",
+        ),
+    ),
+    of(
+        &["MIDA"],
         not_built(
             "is for composite, not for mode mida",
             "a sample of MIDA weakens what lies before it by how much it exceeds the maximum so far: a slab has no integral of its own, \
-             and a table over both ends and that maximum has 256^3 entries, 128 MiB; voxels that are not seen count too",
+             and a table over both ends and that maximum has 256^3 entries, 128 MiB",
         ),
     ),
     of(
@@ -311,10 +328,6 @@ pub const RULES: &[Rule] = &[
     not_built(
         "interpolation between slices is for functions of the value alone",
         "gradients between slices: 6 more samples of two slices each, 48 fetches a sample in place of 8",
-    ),
-    not_built(
-        "interpolation between slices is for composite, not for mode",
-        "see the modes of slices: a barrier for each of 443 slices of 256^3 voxels",
     ),
     // Pre-integration: tables over both ends of a slab.
     not_built(
