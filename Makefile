@@ -18,6 +18,7 @@
 #              file for pkg-config there; make header writes include/stratavox.h anew
 # make api     compares what the library shows of itself with docs/public-api.txt
 # make bench   frame times of each technique, mode and projection on this device
+# make pairs   which pairs of features of the command line are drawn, and why not, into docs/pairs.md
 # make gpu-cost   registers, spills, waves and estimated cycles of pipelines on three generations of AMD's chips, by the compiler of
 #              RADV without a graphics card, into docs/gpu-cost.md
 
@@ -313,6 +314,9 @@ header:
 api:
 	$(CARGO) test --locked --no-default-features --test host -- --ignored public_api::
 
+pairs: driver
+	$(ON_DEVICE) --test cli -- --ignored pairs::write_the_page
+
 bench: driver
 	$(CARGO) build --locked --release
 	target/release/stratavox bench
@@ -323,7 +327,7 @@ gpu-cost: driver layers
 
 # make soak      devices and renderers made, drawn with and destroyed LOOPS times: memory of ours, of the process, open files
 # make portable  what the compiler says of Windows, macOS and Android; a target that rustup cannot install is skipped by name
-.PHONY: soak soak-short portable
+.PHONY: soak soak-short portable pairs
 LOOPS ?= 10000
 
 soak: driver

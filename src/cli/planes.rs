@@ -9,7 +9,7 @@
 
 use super::{Error, flags::SceneFlags, scene_inputs::SceneInputs};
 use crate::camera::Projection;
-use crate::picture::Picture;
+use crate::picture::{Layer, Picture};
 
 /// Pixels between two panels.
 const GAP: u32 = 4;
@@ -110,21 +110,49 @@ impl Panels {
             height,
             pixels: vec![[0.0; 4]; width as usize * height as usize],
             color_space: pictures[0].color_space,
-            layers: Vec::new(),
+            layers: self.layers(&pictures),
         };
         if let Some(background) = background {
             whole.over_background(background);
         }
-        for (i, picture) in (0..).zip(&pictures) {
-            let left = i % self.columns * (self.extent[0] + GAP);
-            let top = i / self.columns * (self.extent[1] + GAP);
-            let rows = picture.pixels.chunks(picture.width as usize);
-            for (y, row) in (top..).zip(rows) {
-                let first = (y * width + left) as usize;
-                whole.pixels[first..first + row.len()].copy_from_slice(row);
-            }
+        for (i, picture) in pictures.iter().enumerate() {
+            self.put(i, &picture.pixels, &mut whole.pixels);
         }
         whole
+    }
+
+    /// The layers of all in one; what lies between two is 0.
+    fn layers(&self, pictures: &[Picture]) -> Vec<Layer> {
+        let pixels = (self.whole[0] * self.whole[1]) as usize;
+        let together = |(nth, layer): (usize, &Layer)| {
+            let size = layer.values.len() / pictures[0].pixels.len();
+            let mut values = vec![0.0; pixels * size];
+            for (i, picture) in pictures.iter().enumerate() {
+                self.put(i, &picture.layers[nth].values, &mut values);
+            }
+            Layer {
+                kind: layer.kind,
+                values,
+            }
+        };
+        pictures[0]
+            .layers
+            .iter()
+            .enumerate()
+            .map(together)
+            .collect()
+    }
+
+    /// Puts the rows of the panel of this number in their place, of a pixel as many numbers as there are.
+    fn put<T: Copy>(&self, panel: usize, from: &[T], to: &mut [T]) {
+        let ([width, height], i) = (self.extent, panel as u32);
+        let left = i % self.columns * (width + GAP);
+        let top = i / self.columns * (height + GAP);
+        let size = from.len() / (width * height) as usize;
+        for (y, row) in (top..).zip(from.chunks(width as usize * size)) {
+            let first = (y * self.whole[0] + left) as usize * size;
+            to[first..first + row.len()].copy_from_slice(row);
+        }
     }
 }
 

@@ -64,6 +64,17 @@ fn every_time_is_the_picture_of_that_time_under_one_window() {
         let words = format!("{storm} --window -20,30 --time {k}");
         assert_frame_is(&folder, &format!("{k}.png"), &words);
     }
+    // Noise is taken out of each time.
+    let smooth = "--window -20,30 --denoise gaussian";
+    folder
+        .run(&format!(
+            "animate --look plain {storm} {smooth} --times -o n%d.png {SMALL}"
+        ))
+        .assert_done();
+    for k in 0..3 {
+        let words = format!("{storm} {smooth} --time {k}");
+        assert_frame_is(&folder, &format!("n{k}.png"), &words);
+    }
     // Without a window it is the range of all times: that of any one of them is narrower.
     let ran = folder.run(&format!(
         "animate --look plain {storm} --times -o all%d.png {SMALL}"

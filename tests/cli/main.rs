@@ -45,6 +45,7 @@ mod messages;
 mod messages_inputs;
 mod mixed;
 mod opacity;
+mod pairs;
 mod paths;
 mod person;
 mod pictures;

@@ -118,6 +118,11 @@ fn what_a_cut_cannot_be_is_refused() {
             "--section axial --technique slices-3d",
             "--section takes its samples on the cut",
         ),
+        (
+            "--section axial --technique splat",
+            "--section takes its samples on the cut",
+        ),
+        ("--section axial --mode iso", "--thickness"),
         ("--thickness 3", "--section"),
     ] {
         let words = format!("render phantom:fog,n=8 -o a.png {words}");
@@ -284,6 +289,26 @@ fn several_planes_are_those_of_single_pictures_at_one_scale() {
         let outside = all.iter().zip(&inside).filter(|(_, inside)| !**inside);
         for (pixel, _) in outside {
             assert_eq!(pixel, &[0.0, 0.0, 1.0, 1.0], "between the planes");
+        }
+    }
+    // Layers lie as the pictures do, with nothing between.
+    let layer = |words: &str, extent: [usize; 2]| {
+        picture(
+            &folder,
+            &format!("{words} {window} --annotate orientation"),
+            extent,
+        );
+        let bytes = fs::read(folder.path("a.annotation.npy")).expect("a layer");
+        let numbers = bytes[bytes.len() - 16 * extent[0] * extent[1]..].chunks(16);
+        numbers.map(<[u8]>::to_vec).collect::<Vec<_>>()
+    };
+    let all = layer("--section axial,sagittal", [204, 100]);
+    for (plane, left) in [("axial", 0), ("sagittal", 104)] {
+        let alone = layer(&format!("--section {plane} --view-height 5"), [100, 100]);
+        assert!(alone.iter().any(|pixel| *pixel != alone[0]), "{plane}");
+        for (i, wanted) in alone.iter().enumerate() {
+            let at = i / 100 * 204 + left + i % 100;
+            assert_eq!(&all[at], wanted, "{plane}, pixel {i}");
         }
     }
     // A scene file says them, and draws the same.

@@ -48,6 +48,12 @@ fn a_sphere_is_as_wide_as_its_value_says() {
             .count()
     };
     assert!(count("") > count("--sphere-size 12"));
+    // A plane takes those away whose middles it cuts off, and leaves the others whole.
+    let cut = alphas(&folder, "--sphere-size 12 --clip 1,0,0,-1");
+    for (i, (&cut, &whole)) in cut.iter().zip(&drawn).enumerate() {
+        let is_left = i % SIDE < 20;
+        assert_eq!(cut, if is_left { 0.0 } else { whole }, "pixel {i}");
+    }
 }
 
 #[test]
@@ -84,6 +90,20 @@ fn what_spheres_do_not_go_with_is_refused_by_name() {
             "--device reference",
         ),
         ("p.csv --points-as spheres --sphere-size 0", "--sphere-size"),
+        ("p.csv --points-as spheres --jitter", "and --jitter"),
+        (
+            "p.csv --points-as spheres --preintegrated",
+            "and --preintegrated",
+        ),
+        ("p.csv --points-as spheres --filter cubic", "and --filter"),
+        (
+            "p.csv --points-as spheres --shading phong",
+            "and --shading phong",
+        ),
+        (
+            "p.csv --points-as spheres --ambient-occlusion 1",
+            "and --ambient-occlusion",
+        ),
         ("p.csv --points-as cubes", "cubes"),
         ("p.csv --sphere-size 3", "--points-as spheres"),
         ("phantom:sphere,n=8 --points-as spheres", "--points-as"),

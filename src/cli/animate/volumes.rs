@@ -228,7 +228,8 @@ impl<'a> Volumes<'a> {
                 let whole = source.header().whole();
                 let limits = self.scene.input.limits();
                 let pick = TimeComponent { time, ..pick };
-                let volume = Volume::read(source.as_ref(), pick, whole, &limits)?;
+                let mut volume = Volume::read(source.as_ref(), pick, whole, &limits)?;
+                load::denoise(std::slice::from_mut(&mut volume), &self.scene)?;
                 Volume {
                     // Stretched as the first is.
                     world_from_voxel,

@@ -178,7 +178,7 @@ const WARP: &str = "--technique shear-warp is for --mode composite, mip, minip, 
                     --aa-uneven, --adaptive-steps and --cut-faces";
 /// What splats go with.
 const SPLATS: &str = "--technique splat is for --mode composite, mip, minip, average and xray, with a kernel (--splat-std) and \
-                      sheets (--sheets) of its own: leave out the other flag, or take --technique raycast";
+                      sheets (--sheets) of its own: leave out the other flag, or draw a volume by --technique raycast";
 
 /// What paths go with.
 const PATHS: &str = "--technique pathtrace is for --mode composite of one volume of numbers, by --filter linear and nearest, with lights \

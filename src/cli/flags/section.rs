@@ -113,10 +113,18 @@ impl SectionFlags {
         if sampling.mode.is_none() {
             settings.mode = Mode::Average;
         }
-        if !settings.technique.has_depth() || settings.lattice != Lattice::Ray {
+        // Sheets of splats are far apart: a cut of one sample lies between two.
+        let is_between = settings.technique.splats() && self.thickness.is_none();
+        if !settings.technique.has_depth() || is_between || settings.lattice != Lattice::Ray {
             return Err(Error::usage(
                 "--section takes its samples on the cut: other lattices than that of rays have none there",
                 "leave out --technique and --lattice",
+            ));
+        }
+        if settings.mode == Mode::Iso && self.thickness.is_none() {
+            return Err(Error::usage(
+                "--section without --thickness is one sample a ray, and --mode iso shows what lies between two",
+                "add --thickness T for the surfaces in a slab",
             ));
         }
         Ok(settings)

@@ -57,23 +57,30 @@ const SMALLEST: f64 = 0.3;
 
 impl DrawnLines {
     /// Points as spheres, in the colours of their values and larger where these are; pixels across the largest.
-    pub fn spheres(points: &Points, legend: LineLegend, pixels: Option<f64>) -> Self {
+    pub fn spheres(
+        points: &Points,
+        is_kept: impl Fn(DVec3) -> bool,
+        legend: LineLegend,
+        pixels: Option<f64>,
+    ) -> Self {
         let function = &legend.function;
         let [low, high] = points.value_range();
         let share = |value: f64| {
             let part = ((value - low) / (high - low)).clamp(0.0, 1.0);
             SMALLEST + (1.0 - SMALLEST) * if part.is_finite() { part } else { 0.5 }
         };
-        let values = || points.values().iter().copied().map(f64::from);
+        let values = points.values().iter().copied().map(f64::from);
+        let kept = || {
+            let all = points.places().iter().copied().zip(values.clone());
+            all.filter(|(place, _)| is_kept(*place))
+        };
         let color = |value: f64| function.srgb(value).map(|c| decode_srgb(c as f32));
-        let places = points.places().iter();
         let set = LineSet {
-            lines: places
-                .zip(values())
-                .map(|(&place, value)| vec![(place, color(value))])
+            lines: kept()
+                .map(|(place, value)| vec![(place, color(value))])
                 .collect(),
             width_pixels: pixels.unwrap_or(SPHERE_PIXELS),
-            shares: Some(values().map(share).collect()),
+            shares: Some(kept().map(|(_, value)| share(value)).collect()),
             has_heads: false,
         };
         Self {

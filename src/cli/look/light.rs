@@ -82,10 +82,11 @@ pub fn with_light(scene: &SceneFlags, seen: Seen, made_for: Use) -> SceneFlags {
     chosen
 }
 
-/// The mode, where the picture is one of the volume.
+/// The mode, where the picture is one of the volume: neither a section nor spheres in place of it.
 fn mode(scene: &SceneFlags) -> Option<Mode> {
     let word = scene.sampling.mode.unwrap_or(Mode::Composite);
-    scene.section.section.is_none().then_some(word)
+    let is_other = scene.section.section.is_some() || scene.points_are_spheres();
+    (!is_other).then_some(word)
 }
 
 fn origin(scene: &SceneFlags) -> Origin {

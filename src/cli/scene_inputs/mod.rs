@@ -220,7 +220,7 @@ impl SceneInputs {
             return points::read(scene, settings.mode, progress);
         }
         if scene.points_are_spheres() {
-            return points::spheres(scene, settings.mode, progress);
+            return points::spheres(scene, settings, progress);
         }
         let said = scene.is_auto().then(|| context(source.header()));
         let (plan, note) = plan(scene, source.header())?;

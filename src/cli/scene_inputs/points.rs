@@ -1,16 +1,16 @@
 //! Scattered points, read, and how their values are seen.
 
-use super::{Others, SceneInputs, has_beside};
+use super::{Others, SceneInputs};
 use crate::annotate::{LineLegend, caption, unit};
 use crate::cli::{
     Error, exaggerate,
-    flags::{Classification, ClassificationFlags, SceneFlags, summary},
+    flags::{Classification, ClassificationFlags, SceneFlags, ShadingWord, summary},
     flow::DrawnLines,
     look::short,
     progress::Progress,
 };
 use crate::points::Points;
-use crate::technique::{Mode, PerMode};
+use crate::technique::{Mode, PerMode, Settings};
 use crate::transfer::{
     ColorPoint, Colormap, Interpolation, OpacityPoint, TransferFunction, Window,
 };
@@ -48,15 +48,15 @@ pub fn read(scene: &SceneFlags, mode: Mode, progress: &Progress) -> Result<Scene
     })
 }
 
-/// The same as spheres, around a volume of which nothing is seen.
-pub fn spheres(scene: &SceneFlags, mode: Mode, progress: &Progress) -> Result<SceneInputs, Error> {
-    if mode != Mode::Composite {
-        return Err(Error::usage(
-            format!("--points-as spheres and --mode {mode}: spheres are no volume"),
-            "leave out --mode",
-        ));
-    }
+/// The same as spheres, around a volume of which nothing is seen; a clip plane takes those away whose middles it cuts off.
+pub fn spheres(
+    scene: &SceneFlags,
+    settings: &Settings,
+    progress: &Progress,
+) -> Result<SceneInputs, Error> {
+    let mode = settings.mode;
     check_words(scene, mode)?;
+    check_spheres(scene, mode)?;
     let (points, volume, header, factor) = placed(scene, progress)?;
     let mut classification = classification(&scene.classification, &volume, mode)?;
     let lines = match &mut classification {
@@ -70,7 +70,11 @@ pub fn spheres(scene: &SceneFlags, mode: Mode, progress: &Progress) -> Result<Sc
                 .opacity
                 .iter_mut()
                 .for_each(|point| point.opacity = 0.0);
-            DrawnLines::spheres(&points, legend, scene.point_look.sphere_size)
+            let is_kept = |place: DVec3| {
+                let mut planes = settings.clip_planes.iter();
+                planes.all(|plane| plane.normal.dot(place) >= plane.offset)
+            };
+            DrawnLines::spheres(&points, is_kept, legend, scene.point_look.sphere_size)
         }
         Classification::RangeOfPicture => unreachable!("a composite has a function"),
     };
@@ -82,19 +86,53 @@ pub fn spheres(scene: &SceneFlags, mode: Mode, progress: &Progress) -> Result<Sc
 
 /// What is for volumes alone.
 fn check_words(scene: &SceneFlags, mode: Mode) -> Result<(), Error> {
-    let of_volumes = scene.labels.labels.is_some()
-        || has_beside(scene, mode)
-        || scene.channels.are_given()
-        || scene.input.component.is_some()
-        || scene.denoise.is_some()
-        || scene.section.section.is_some();
-    if of_volumes {
-        return Err(Error::usage(
-            "--labels, --channel, --component, --opacity-variable, --denoise, --section and --preclassified are for volumes, and these are scattered points",
+    let of_volumes = [
+        ("--labels", scene.labels.labels.is_some()),
+        ("--with", !scene.with.with.is_empty()),
+        (scene.opacity.word(), scene.opacity.are_given()),
+        ("--preclassified", scene.sampling.preclassified),
+        ("--iso-color-by", scene.modes.paint(mode).is_some()),
+        ("--channel", scene.channels.are_given()),
+        ("--component", scene.input.component.is_some()),
+        ("--denoise", scene.denoise.is_some()),
+        ("--section", scene.section.section.is_some()),
+    ];
+    match of_volumes.into_iter().find(|(_, is_given)| *is_given) {
+        Some((word, _)) => Err(Error::usage(
+            format!("{word} is for volumes, and these are scattered points"),
             "leave it out",
-        ));
+        )),
+        None => Ok(()),
     }
-    Ok(())
+}
+
+/// What is for samples of a volume, of which spheres have none.
+fn check_spheres(scene: &SceneFlags, mode: Mode) -> Result<(), Error> {
+    let (sampling, light) = (&scene.sampling, &scene.light);
+    let is_lit = light.shading == Some(ShadingWord::Phong);
+    let mode = match mode {
+        Mode::Composite => None,
+        mode => Some(format!("--mode {mode}")),
+    };
+    let of_samples = [
+        ("--preintegrated", sampling.preintegrated),
+        ("--smooth", sampling.smooth),
+        ("--jitter", sampling.jitter.is_some()),
+        ("--adaptive-steps", sampling.adaptive_steps.is_some()),
+        ("--filter", sampling.filter.is_some()),
+        ("--cut-faces", sampling.cut_faces.is_some()),
+        ("--shading phong", is_lit),
+        ("--shadows", light.shadows.is_some()),
+        ("--ambient-occlusion", light.ambient_occlusion.is_some()),
+    ];
+    let given = of_samples.into_iter().find(|(_, is_given)| *is_given);
+    match mode.or(given.map(|(word, _)| word.to_owned())) {
+        Some(word) => Err(Error::usage(
+            format!("--points-as spheres and {word}: spheres are no volume"),
+            format!("leave out {word}"),
+        )),
+        None => Ok(()),
+    }
 }
 
 /// The points in the drawn world, the volume that stands for them, what their file says, and how much higher they are

@@ -1,0 +1,66 @@
+//! Every pair of features of the command line is drawn or refused, as `docs/pairs.md` says.
+
+mod features;
+mod inputs;
+mod page;
+mod rules;
+mod sweep;
+
+use page::Counts;
+use rules::RULES;
+use sweep::Outcome;
+
+const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/pairs.md");
+
+/// Of the pairs that mean something so many are drawn at least.
+const LEAST_SHARE: f64 = 0.85;
+
+/// The outcomes, all of them right.
+fn outcomes() -> Vec<Vec<Outcome>> {
+    let found = sweep::outcomes();
+    let wrong = found.iter().flatten().filter_map(|outcome| match outcome {
+        Outcome::Wrong(what) => Some(what.as_str()),
+        _ => None,
+    });
+    let wrong: Vec<_> = wrong.collect();
+    assert!(
+        wrong.is_empty(),
+        "{} pairs:\n{}",
+        wrong.len(),
+        wrong.join("\n")
+    );
+    found
+}
+
+/// Fails where a rule is the reason of no pair, or too few pairs are drawn.
+fn check(found: &[Vec<Outcome>]) {
+    for (i, rule) in RULES.iter().enumerate() {
+        let is_needed = found.iter().flatten().any(|one| page::is_of(one, i));
+        assert!(is_needed, "nothing is refused by the rule {:?}", rule.says);
+    }
+    let counts = Counts::of(found);
+    println!(
+        "{} pairs drawn, {} with a flag more, {} without a meaning, {} not built",
+        counts.drawn, counts.with_more, counts.meaningless, counts.not_built
+    );
+    assert!(counts.share() >= LEAST_SHARE, "{:.3}", counts.share());
+}
+
+#[test]
+fn every_pair_is_drawn_or_refused_for_a_reason() {
+    let found = outcomes();
+    check(&found);
+    let kept = std::fs::read_to_string(PAGE).expect("docs/pairs.md");
+    assert!(
+        page::page(&found) == kept,
+        "docs/pairs.md is old: make pairs"
+    );
+}
+
+#[test]
+#[ignore = "writes docs/pairs.md: make pairs"]
+fn write_the_page() {
+    let found = outcomes();
+    std::fs::write(PAGE, page::page(&found)).expect("docs/pairs.md");
+    check(&found);
+}
