@@ -97,7 +97,9 @@ mod tests {
             let function = TransferFunction {
                 opacity: opacity.clone().collect(),
                 interpolation,
-                ..TransferFunction::grey_ramp([0.0, 36.0])
+                color: Vec::new(),
+                reference_length: None,
+                gradient_transfer: None,
             };
             let table = Majorants::new(&function, |opacity| opacity);
             for low in 0..BINS {
