@@ -221,7 +221,7 @@ fn light_at(at: ptr<function, Collision>, numbers: vec4<f32>) -> vec3<f32> {
     let i = min(u32(numbers.y * count), frame.light_count - 1u);
     let axis = frame.light_directions[i].xyz;
     let way = around(axis, 1.0 - numbers.z * frame.path_light_size, numbers.w);
-    var part = PI * phase_value(dot((*at).direction, way));
+    var part = 3.1415927 * phase_value(dot((*at).direction, way));
     if any((*at).normal != vec3(0.0)) {
         part = max(dot((*at).normal, way), 0.0);
     }

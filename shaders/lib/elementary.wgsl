@@ -1,29 +1,25 @@
 // Functions that drivers compute each in their own way, by sums and products alone. CPU reference:
 // src/technique/pathtrace/elementary.rs.
 
-const SQRT_2: f32 = 1.4142135;
-const LN_2: f32 = 0.6931472;
-const TAU: f32 = 6.2831855;
-
 // -ln(x) of 2^-24 <= x <= 1: ln m = 2 artanh s, s = (m - 1) / (m + 1), for the m in [sqrt(1/2), sqrt(2)) with x = m 2^e.
 fn minus_ln(x: f32) -> f32 {
     let bits = bitcast<u32>(x);
     var exponent = f32(bits >> 23u) - 127.0;
     var m = bitcast<f32>((bits & 0x7fffffu) | 0x3f800000u);
-    if m >= SQRT_2 {
+    if m >= 1.4142135 {
         m *= 0.5;
         exponent += 1.0;
     }
     let s = (m - 1.0) / (m + 1.0);
     let q = s * s;
     let series = 1.0 + q * (1.0 / 3.0 + q * (1.0 / 5.0 + q * (1.0 / 7.0 + q * (1.0 / 9.0))));
-    return -(exponent * LN_2 + 2.0 * s * series);
+    return -(exponent * 0.6931472 + 2.0 * s * series);
 }
 
 // Cosine and sine of a part of a turn, 0 to 1: Taylor's series within an eighth of a turn.
 fn turned(part: f32) -> vec2<f32> {
     let quarter = floor(4.0 * part + 0.5);
-    let x = TAU * (part - 0.25 * quarter);
+    let x = 6.2831855 * (part - 0.25 * quarter);
     let q = x * x;
     let c = 1.0 + q * (-1.0 / 2.0 + q * (1.0 / 24.0 + q * (-1.0 / 720.0 + q * (1.0 / 40320.0))));
     let s = x * (1.0 + q * (-1.0 / 6.0 + q * (1.0 / 120.0 + q * (-1.0 / 5040.0 + q * (1.0 / 362880.0)))));

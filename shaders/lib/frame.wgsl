@@ -11,10 +11,10 @@ const MAX_CHANNELS: u32 = 4u;
 const CHANNEL_ROWS: u32 = 12u;
 const MAX_LIGHTS: u32 = 4u;
 const MAX_LEVELS: u32 = 8u;
-// Bins of values, and rows with the largest extinctions of 1, 2, 4, .. of them beside each other.
+// Bins of values, and rows with the largest extinctions of 1, 2, 4, .. of them beside each other: seven fill 112 of the vectors.
 const MAJORANT_BINS: u32 = 64u;
 const MAJORANT_ROWS: u32 = 7u;
-const MAJORANT_VECTORS: u32 = 112u;
+const MAJORANT_VECTORS: u32 = 128u;
 
 struct Frame {
     // Beside vectors stand the numbers that fragments of slices ask for (`shaders/flat_varyings.rs`).

@@ -9,12 +9,10 @@
 
 #import frame
 
-const PI: f32 = 3.1415927;
-
 // f, g1, g2 in path_phase; in w 1 for Rayleigh.
 fn phase_value(c: f32) -> f32 {
     if frame.path_phase.w != 0.0 {
-        return 3.0 * (1.0 + c * c) / (16.0 * PI);
+        return 3.0 * (1.0 + c * c) / 50.265484;
     }
     let f = frame.path_phase.x;
     return f * lobe(frame.path_phase.y, c) + (1.0 - f) * lobe(frame.path_phase.z, c);
@@ -22,7 +20,7 @@ fn phase_value(c: f32) -> f32 {
 
 fn lobe(g: f32, c: f32) -> f32 {
     let d = (1.0 - g) * (1.0 - g) + 2.0 * g * (1.0 - c);
-    return (1.0 - g * g) / (4.0 * PI * d * sqrt(d));
+    return (1.0 - g * g) / (12.566371 * d * sqrt(d));
 }
 
 // A cosine with this density, by two numbers from 0 to 1.

@@ -217,7 +217,7 @@ fn matter_without_an_end_reflects_what_chandrasekhar_says() {
 fn surfaces_reflect_by_the_cosine_to_their_normal() {
     let volume = layer(|z| z);
     let function = matter([1.0, 0.5, 0.25], &[(0.0, 2.0)]);
-    let (mu, mu0, depth) = (0.6, 0.8, 2.0);
+    let (mu, mu0, depth) = (0.6_f64, 0.8, 2.0);
     let camera = eye(at(mu, 0.0));
     let settings = settings(PathTracing {
         samples: 8,
@@ -230,7 +230,7 @@ fn surfaces_reflect_by_the_cosine_to_their_normal() {
     let picture = drawn(&scene);
     // Half a voxel at each face lies beyond the outermost centres, where a tap finds the edge: half the gradient.
     for (channel, albedo) in [1.0, 0.5, 0.25].into_iter().enumerate() {
-        let lost = 1.0 - (-depth * (1.0 / mu + 1.0 / mu0) as f64).exp();
+        let lost = 1.0 - (-depth * (1.0 / mu + 1.0 / mu0)).exp();
         let wanted = albedo * mu0 * mu0 / (mu + mu0) * lost;
         assert_near("surface", mean(&picture, channel), wanted);
     }

@@ -30,7 +30,7 @@ impl Majorants {
             _ => [0.0; 2],
         };
         let width = (last - first) / BINS as f64;
-        let mut rows = vec![0.0_f32; BINS * MAJORANT_ROWS as usize];
+        let mut rows = vec![0.0_f32; 4 * MAJORANT_VECTORS as usize];
         for (i, bin) in rows.iter_mut().enumerate().take(BINS) {
             let ends = [i, i + 1].map(|k| first + k as f64 * width);
             *bin = extinction_of(most_between(function, ends)) as f32;

@@ -111,10 +111,9 @@ mod tests {
     use super::*;
 
     fn frame(phase: Phase) -> Frame {
-        Frame {
-            path_phase: phase.numbers(),
-            ..bytemuck::Zeroable::zeroed()
-        }
+        let mut frame: Frame = bytemuck::Zeroable::zeroed();
+        frame.path_phase = phase.numbers();
+        frame
     }
 
     const PHASES: [Phase; 7] = [
