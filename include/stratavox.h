@@ -111,6 +111,8 @@ enum sv_technique
     SV_TECHNIQUE_SHEAR_WARP = 3,
     // Every voxel is a Gaussian, of which rays take the integral.
     SV_TECHNIQUE_SPLAT = 4,
+    // Random paths of light that scatters. Not in a host's frames.
+    SV_TECHNIQUE_PATHTRACE = 5,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L

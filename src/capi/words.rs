@@ -17,6 +17,8 @@ pub enum sv_technique {
     SV_TECHNIQUE_SHEAR_WARP = 3,
     /// Every voxel is a Gaussian, of which rays take the integral.
     SV_TECHNIQUE_SPLAT = 4,
+    /// Random paths of light that scatters. Not in a host's frames.
+    SV_TECHNIQUE_PATHTRACE = 5,
 }
 
 /// What is done with the samples of a ray.
