@@ -18,6 +18,7 @@ use crate::technique::composite::Composite;
 use crate::technique::faces::{FACE_LENGTH, cut_face, on_face};
 use crate::technique::mixture::color_of;
 use crate::technique::own_grid::{ChannelGrids, place_in_channel};
+use crate::technique::pathtrace::{PathTracing, denoised};
 use crate::technique::reference::{Gathered, Samples, moved};
 use crate::technique::shading::shade;
 use crate::technique::splat::ViewPoints;
@@ -69,7 +70,26 @@ fn render_unlabeled<R: Real>(scene: &Scene) -> Result<Picture, Error> {
     render_one::<R>(scene)
 }
 
+/// Paths in two halves, and what both say without noise.
+fn render_denoised<R: Real>(scene: &Scene) -> Result<Picture, Error> {
+    let of_half = |path: &PathTracing| {
+        let settings = &Settings {
+            path: path.clone(),
+            ..scene.settings.clone()
+        };
+        render_one::<R>(&Scene { settings, ..*scene })
+    };
+    let halves = scene.settings.path.halves();
+    let [first, second] = [of_half(&halves[0])?, of_half(&halves[1])?];
+    let pixels = denoised([&first.pixels, &second.pixels], first.width as usize);
+    Ok(Picture { pixels, ..first })
+}
+
 fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
+    let settings = scene.settings;
+    if settings.technique.traces_paths() && settings.path.denoise {
+        return render_denoised::<R>(scene);
+    }
     R::begin();
     let grid = scene.volume.grid();
     let mode = scene.settings.mode;

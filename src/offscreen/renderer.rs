@@ -340,7 +340,7 @@ impl<'v> Renderer<'v> {
             None => return Err(technique::Error::NoTransferFunction.into()),
         }
         let pixels = match scene.settings.technique.traces_paths() {
-            true => self.mean_of_paths(scene, clock)?,
+            true => self.picture_of_paths(scene, clock)?,
             false => self.mean_of_rays(scene, clock)?,
         };
         let per_side = scene.settings.rays_per_side;

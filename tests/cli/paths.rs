@@ -83,6 +83,7 @@ fn what_paths_do_not_go_with_is_refused_by_name() {
         ("--density-scale 0", "--density-scale"),
         ("--light-size 120", "90 degrees"),
         ("--spp 0", "--spp"),
+        ("--spp 3 --denoise-picture", "4 or more"),
         ("--surface-scattering=-1", "surfaces"),
     ] {
         let ran = folder.run(&format!(

@@ -464,3 +464,30 @@ fn without_bounces_the_picture_is_the_composite() {
         assert!(error < 2e-3);
     }
 }
+
+/// Taking it out is worth more than twice the paths.
+#[test]
+fn noise_that_is_taken_out_is_no_detail() {
+    let (volume, camera) = (blobs(), around_blobs());
+    let function = matter([0.9, 0.7, 0.4], &[(0.1, 0.0), (0.4, 1.5), (1.0, 0.2)]);
+    let mut renderer = Renderer::new(device(), &volume).expect("a renderer");
+    let mut of = |samples, seed, denoise| {
+        let settings = settings(PathTracing {
+            samples,
+            seed,
+            denoise,
+            ..lit()
+        });
+        let scene = scene(&volume, &function, &camera, &settings, [60, 50]);
+        renderer.render(&scene, &[]).expect("a picture").picture
+    };
+    let truth = of(256, 7, false);
+    let error = |picture: &Picture| {
+        let pairs = picture.pixels.iter().zip(&truth.pixels);
+        let off = pairs.flat_map(|(a, b)| [0, 1, 2, 3].map(|c| f64::from(a[c] - b[c]).powi(2)));
+        (off.sum::<f64>() / (4 * truth.pixels.len()) as f64).sqrt()
+    };
+    let [before, after] = [false, true].map(|denoise| error(&of(16, 0, denoise)));
+    println!("{before} {after}");
+    assert!(after < before / 2.0_f64.sqrt(), "{before} {after}");
+}

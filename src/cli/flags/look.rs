@@ -71,6 +71,7 @@ impl SceneFlags {
         path.environment.get_or_insert(Numbers([SKY; 3]));
         path.surface_scattering.get_or_insert(SURFACE);
         path.density_scale.get_or_insert(DENSITY);
+        path.denoise_picture |= path.spp.is_none_or(|paths| paths >= LEAST_DENOISED);
         if self.light.light.is_empty() {
             self.light
                 .light
@@ -86,3 +87,5 @@ const KEY_LIGHT_DEGREES: f64 = 40.0;
 const SKY: f64 = 0.35;
 const SURFACE: f64 = 8.0;
 const DENSITY: f64 = 0.5;
+/// Paths a pixel that tell what is noise.
+const LEAST_DENOISED: u32 = 4;

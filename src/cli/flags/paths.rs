@@ -51,6 +51,10 @@ pub struct PathFlags {
     #[arg(long, value_name = "S", value_parser = finite, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub surface_scattering: Option<f64>,
+    /// Take the noise out of the picture, by what two halves of the paths say of it; 4 paths at least
+    #[arg(long, help_heading = HEADING)]
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub denoise_picture: bool,
 }
 
 /// Their number is an f32 somewhere.
@@ -78,6 +82,7 @@ impl PathFlags {
             lights,
             light_size_degrees: light.light_size.unwrap_or(default.light_size_degrees),
             sky: self.environment.map_or(default.sky, |numbers| numbers.0),
+            denoise: self.denoise_picture,
             surface: self.surface_scattering.unwrap_or(default.surface),
             ..default
         }
@@ -88,7 +93,7 @@ impl PathFlags {
         match *self == Self::default() {
             true => Vec::new(),
             false => vec![
-                "--spp, --seed, --bounces, --density-scale, --albedo, --phase, --environment and --surface-scattering have no effect without --technique pathtrace",
+                "--spp, --seed, --bounces, --density-scale, --albedo, --phase, --environment, --surface-scattering and --denoise-picture have no effect without --technique pathtrace",
             ],
         }
     }

@@ -1,7 +1,7 @@
 //! How long the next picture will take, by what the last one took.
 
 use super::Renderer;
-use super::paths::paths_at_once;
+use super::paths::passes_of_paths;
 use crate::offscreen::time_slices::Spent;
 use crate::scene::Scene;
 use crate::technique::cost::{fetches_of_picture, ms_of_fetches};
@@ -123,10 +123,7 @@ impl<'v> Renderer<'v> {
 pub fn passes_of(scene: &Scene, has_layers: bool, max_loop_turns: u32) -> usize {
     let settings = scene.settings;
     let rays = match settings.technique.traces_paths() {
-        true => settings
-            .path
-            .samples
-            .div_ceil(paths_at_once(max_loop_turns)),
+        true => passes_of_paths(&settings.path, max_loop_turns),
         false => settings.rays_per_side.pow(2),
     };
     let rays = rays as usize;

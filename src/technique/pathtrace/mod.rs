@@ -7,6 +7,7 @@
 //! Opacity of the transfer function is extinction, its colour the albedo. Each pixel is the mean of independent paths, which
 //! is the answer of this equation but for noise: its standard deviation falls as 1 / sqrt(paths).
 
+mod denoise;
 mod elementary;
 mod majorants;
 mod phase;
@@ -15,6 +16,7 @@ mod random;
 pub mod reference;
 mod rules;
 
+pub(crate) use denoise::denoised;
 pub use phase::Phase;
 
 use super::gather::{Gather, GatherDesc, RayPass, rays_of};
@@ -52,6 +54,8 @@ pub struct PathTracing {
     pub light_size_degrees: f64,
     /// Radiance from all around, linear red, green and blue.
     pub sky: [f64; 3],
+    /// Take the noise out of the picture by what two halves of the paths say of it; 4 paths at least.
+    pub denoise: bool,
     /// How much of matter is surface: a collision is one with a surface by the chance 1 - exp(-`surface` |gradient|), the
     /// gradient in ranges of values a smallest spacing. 0: there are none.
     pub surface: f64,
@@ -70,6 +74,7 @@ impl Default for PathTracing {
             lights: Vec::new(),
             light_size_degrees: 0.0,
             sky: [0.0; 3],
+            denoise: false,
             surface: 0.0,
         }
     }
@@ -125,6 +130,21 @@ pub(crate) struct Medium<'a> {
 const MAJORANT_SLACK: f64 = 1.0 + 1e-5;
 
 impl PathTracing {
+    /// The same paths in two halves, the first of which may have one more.
+    pub(crate) fn halves(&self) -> [Self; 2] {
+        let first = self.samples.div_ceil(2);
+        let half = |first_sample, samples| Self {
+            first_sample,
+            samples,
+            denoise: false,
+            ..self.clone()
+        };
+        [
+            half(self.first_sample, first),
+            half(self.first_sample + first, self.samples - first),
+        ]
+    }
+
     /// Tells the parameters what they do not know without the volume.
     pub(crate) fn tell(&self, medium: &Medium, frame: &mut Frame) {
         let Medium {

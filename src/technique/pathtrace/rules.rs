@@ -86,6 +86,9 @@ impl PathTracing {
         let count = f64::from(self.samples);
         let wanted = "1 or more";
         Error::unless(self.samples > 0, "paths a pixel", wanted, count)?;
+        let wanted = "4 or more, which tell what is noise";
+        let is_right = !self.denoise || self.samples >= 4;
+        Error::unless(is_right, "paths a pixel", wanted, count)?;
         let density = self.density;
         let is_right = density > 0.0 && density.is_finite();
         Error::unless(is_right, "the density scale", "a number over 0", density)?;
