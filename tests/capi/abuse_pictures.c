@@ -19,8 +19,9 @@ static void settings(void) {
     const sv_settings start = {.struct_size = sizeof start};
     const double nan = NAN, inf = INFINITY;
 #define with with_settings
-    WITH(sv_settings, start, technique, 5, SV_E_ARGUMENT);
+    WITH(sv_settings, start, technique, 6, SV_E_ARGUMENT);
     WITH(sv_settings, start, technique, SV_TECHNIQUE_SHEAR_WARP, SV_E_UNSUPPORTED);
+    WITH(sv_settings, start, technique, SV_TECHNIQUE_PATHTRACE, SV_E_UNSUPPORTED);
     WITH(sv_settings, start, technique, UINT32_MAX, SV_E_ARGUMENT);
     WITH(sv_settings, start, mode, 9, SV_E_ARGUMENT);
     WITH(sv_settings, start, filter, 7, SV_E_ARGUMENT);
