@@ -28,7 +28,8 @@ fn phase_cosine(lobe_by: f32, u: f32) -> f32 {
     if frame.path_phase.w != 0.0 {
         let z = 4.0 * u - 2.0;
         let a = cube_root(abs(z) + sqrt(z * z + 1.0));
-        return sign(z) * (a - 1.0 / a);
+        let c = a - 1.0 / a;
+        return select(c, -c, z < 0.0);
     }
     let g = select(frame.path_phase.z, frame.path_phase.y, lobe_by < frame.path_phase.x);
     if abs(g) < 0.5 {
