@@ -58,7 +58,8 @@ fn the_host_holds_little_more_than_the_voxels() {
         "render large.raw --raw {SIDE}x{SIDE}x{SIDE},u16 -o a.png --size 64x64 --samples-per-voxel 0.1"
     );
     let peak = peak_beside_device(&folder, &words);
-    assert!(peak <= voxels * 13 / 10 + 200_000_000, "{peak}");
+    // Without the voxels 190 MB were seen: the program, and a driver that compiles what it has never seen before.
+    assert!(peak <= voxels * 13 / 10 + 220_000_000, "{peak}");
 
     let mut packed = flate2::write::GzEncoder::new(
         File::create(folder.path("large.nrrd.part")).expect("a file"),
