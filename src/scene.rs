@@ -284,6 +284,8 @@ impl<'a> Scene<'a> {
         let medium = Medium {
             function,
             reference_length: self.length_of(function),
+            has_holes: self.volume.validity.is_some(),
+            is_searched: self.settings.conformance,
             value_range: self.volume.value_range,
             smallest_spacing: self.volume.grid().smallest_spacing(),
         };

@@ -109,9 +109,12 @@ fn gather(desc: &GatherDesc) -> Result<Box<dyn Gather>, gpu::Error> {
     Ok(rays_of(desc.gpu, RayPass::picture_of(desc.gpu, &name)?))
 }
 
-/// Turns of the loop over events after which paths end by chance: all ends long before a driver ends the loop
-/// ([`crate::gpu::Caps::max_loop_turns`]).
+/// Turns of loops after which paths end by chance: a quarter of what drivers that count them allow, so that all ends long
+/// before ([`crate::gpu::Caps::max_loop_turns`]).
 const MOST_TURNS: u32 = 1 << 14;
+/// Of one event: a mask's layers and rows, and a cube root.
+const TURNS_OF_MASK: u32 = 10;
+const TURNS_OF_ROOT: u32 = 5;
 
 /// What paths want to know of the volume that they go through.
 #[derive(Clone, Copy, Debug)]
@@ -120,6 +123,10 @@ pub(crate) struct Medium<'a> {
     pub function: &'a TransferFunction,
     /// World length that its opacities are for.
     pub reference_length: f64,
+    /// Whether voxels lack data.
+    pub has_holes: bool,
+    /// Whether its control points are searched.
+    pub is_searched: bool,
     /// The range of the volume's values.
     pub value_range: [f64; 2],
     /// The shortest side of a voxel, world.
@@ -150,6 +157,8 @@ impl PathTracing {
         let Medium {
             function,
             reference_length,
+            has_holes,
+            is_searched,
             value_range: [low, high],
             smallest_spacing,
         } = *medium;
@@ -161,6 +170,17 @@ impl PathTracing {
         frame.path_majorants = majorants.rows;
         // The last row has one entry: of all bins.
         frame.path_majorant = majorants.rows[(MAJORANT_BINS * (MAJORANT_ROWS - 1) / 4) as usize][0];
+        // Clip planes are gone over at each change of direction; a search halves the points of colour and of opacity.
+        let points = (function.color.len() + function.opacity.len() + 1).ilog2() + 2;
+        let more = [
+            (has_holes, TURNS_OF_MASK),
+            (is_searched, 2 * points),
+            (self.phase == Phase::Rayleigh, TURNS_OF_ROOT),
+        ];
+        let more = more
+            .into_iter()
+            .filter_map(|(is_there, turns)| is_there.then_some(turns));
+        frame.path_turns = MOST_TURNS / (1 + frame.clip_plane_count + more.sum::<u32>());
         let range = high - low;
         frame.path_surface = match range > 0.0 {
             true => (self.surface * smallest_spacing / range) as f32,
@@ -181,7 +201,6 @@ impl View<'_> {
         fields.path_phase = path.phase.numbers();
         fields.path_density = path.density as f32;
         fields.path_albedo = path.albedo as f32;
-        fields.path_turns = MOST_TURNS;
         let half = (0.5 * path.light_size_degrees).to_radians();
         fields.path_light_size = (1.0 - half.cos()) as f32;
         let (wanted, limit) = (path.lights.len(), MAX_LIGHTS as usize);
