@@ -118,12 +118,17 @@ fn assert_near(what: &str, [found, error]: [f64; 2], wanted: f64) {
 fn radiance(path: PathTracing, depth: f64, cosine: f64) -> [f64; 2] {
     // Opacities hold 8 at most: denser matter is scaled.
     let scaled = depth / 8.0_f64.min(depth);
-    let function = matter([1.0; 3], &[(0.0, depth / scaled)]);
+    // What is not seen gives the volume macro cells, and each a majorant of its own.
+    let extinction = depth / scaled;
+    let function = matter(
+        [1.0; 3],
+        &[(0.0, 0.0), (0.5, extinction), (1.0, extinction)],
+    );
     let settings = settings(PathTracing {
         density: scaled,
         ..path
     });
-    let (volume, camera) = (layer(|_| 0.0), eye(at(cosine, 0.0)));
+    let (volume, camera) = (layer(|_| 1.0), eye(at(cosine, 0.0)));
     let scene = scene(&volume, &function, &camera, &settings, [48; 2]);
     mean(&drawn(&scene), 0)
 }
