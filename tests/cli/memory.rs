@@ -57,9 +57,10 @@ fn the_host_holds_little_more_than_the_voxels() {
     let words = format!(
         "render large.raw --raw {SIDE}x{SIDE}x{SIDE},u16 -o a.png --size 64x64 --samples-per-voxel 0.1"
     );
+    // A driver that compiles a shader for the first time holds 20 MB more: not what this is about.
+    peak_beside_device(&folder, &words);
     let peak = peak_beside_device(&folder, &words);
-    // Without the voxels 190 MB were seen: the program, and a driver that compiles what it has never seen before.
-    assert!(peak <= voxels * 13 / 10 + 220_000_000, "{peak}");
+    assert!(peak <= voxels * 13 / 10 + 200_000_000, "{peak}");
 
     let mut packed = flate2::write::GzEncoder::new(
         File::create(folder.path("large.nrrd.part")).expect("a file"),

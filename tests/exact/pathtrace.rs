@@ -9,7 +9,7 @@ use stratavox::offscreen::{self, Renderer};
 use stratavox::picture::Picture;
 use stratavox::scene::{Beside, Scene};
 use stratavox::technique::pathtrace::{PathTracing, Phase};
-use stratavox::technique::{ClipPlane, Light, LightSpace, Settings, Technique};
+use stratavox::technique::{ClipPlane, Filter, Light, LightSpace, Settings, Technique};
 use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
 use stratavox::volume::Volume;
 
@@ -217,6 +217,50 @@ fn matter_without_an_end_reflects_what_chandrasekhar_says() {
     }
 }
 
+/// Where there is no data, and outside of a crop box and clip planes, is nothing: for the eye and for light.
+#[test]
+fn what_is_cut_away_and_what_has_no_data_lets_light_through() {
+    let (mu, mu0, depth, left) = (0.6_f64, 0.8, 3.0, 0.5);
+    let lost = 1.0 - (-depth * left * (1.0 / mu + 1.0 / mu0)).exp();
+    let wanted = 0.25 * mu0 / (mu + mu0) * lost;
+    let camera = eye(at(mu, 0.0));
+    let function = matter([1.0; 3], &[(0.0, 0.0), (0.5, depth), (1.0, depth)]);
+    let whole = layer(|_| 1.0);
+    let mut holes = whole.clone();
+    holes.validity = Some((0..32).map(|i| u8::from(i < 16)).collect());
+    let path = || {
+        settings(PathTracing {
+            samples: 16,
+            bounces: Some(1),
+            lights: vec![light(at(mu0, 2.0))],
+            ..PathTracing::default()
+        })
+    };
+    let nearest = Settings {
+        filter: Filter::Nearest,
+        ..path()
+    };
+    let cropped = Settings {
+        crop: Some([DVec3::ZERO, dvec3(2.0, 2.0, 4.0)]),
+        ..path()
+    };
+    let clipped = Settings {
+        clip_planes: vec![ClipPlane {
+            normal: -DVec3::Z,
+            offset: left,
+        }],
+        ..path()
+    };
+    for (name, volume, settings) in [
+        ("no data", &holes, nearest),
+        ("crop", &whole, cropped),
+        ("clip", &whole, clipped),
+    ] {
+        let scene = scene(volume, &function, &camera, &settings, [48; 2]);
+        assert_near(name, mean(&drawn(&scene), 0), wanted);
+    }
+}
+
 /// Where values rise evenly all collisions are with surfaces across the rise (Lambert): n . l in place of pi p(c).
 #[test]
 fn surfaces_reflect_by_the_cosine_to_their_normal() {
@@ -347,7 +391,8 @@ fn the_shader_traces_the_paths_of_its_reference() {
     let parted = pairs().filter(|(a, b)| (0..4).any(|c| (a[c] - b[c]).abs() > 1e-3));
     let share = parted.count() as f64 / picture.pixels.len() as f64;
     println!("{share} of the pixels have a path that parts");
-    assert!(share < 0.02, "{share}");
+    // Of each path 0.2 % at most; a pixel has four.
+    assert!(share < 0.008, "{share}");
     let met = pairs().filter(|(a, _)| a[3] > 0.0).count();
     assert!(met > 1000, "{met}");
 }
@@ -398,43 +443,28 @@ fn the_picture_does_not_depend_on_how_the_work_is_cut() {
     let function = matter([0.9, 0.7, 0.4], &[(0.1, 0.0), (0.4, 1.5), (1.0, 0.2)]);
     let device = device();
     let mut renderer = Renderer::new(device, &volume).expect("a renderer");
-    let mut part = |first_sample, samples, ms| {
+    let mut part = |first_sample, samples, seed, ms| {
         renderer.set_submission_ms(ms);
         let settings = settings(PathTracing {
             first_sample,
             samples,
+            seed,
             ..lit()
         });
         let scene = scene(&volume, &function, &camera, &settings, [60, 50]);
-        renderer
-            .render(&scene, &[])
-            .expect("a picture")
-            .picture
-            .pixels
+        let rendered = renderer.render(&scene, &[]).expect("a picture");
+        rendered.picture.pixels
     };
-    let [all, again, pieces] = [f64::INFINITY, 100.0, 0.0].map(|ms| part(0, 6, ms));
+    let [all, again, pieces] = [f64::INFINITY, 100.0, 0.0].map(|ms| part(0, 6, 0, ms));
     assert!(all == again && all == pieces);
-    let [first, rest] = [part(0, 2, 100.0), part(2, 4, 100.0)];
+    let [first, rest] = [part(0, 2, 0, 100.0), part(2, 4, 0, 100.0)];
     for ((all, a), b) in all.iter().zip(&first).zip(&rest) {
         for c in 0..4 {
             let sum = (2.0 * f64::from(a[c]) + 4.0 * f64::from(b[c])) / 6.0;
             assert!((f64::from(all[c]) - sum).abs() < 1e-6);
         }
     }
-    let other = {
-        let settings = settings(PathTracing {
-            samples: 6,
-            seed: 1,
-            ..lit()
-        });
-        let scene = scene(&volume, &function, &camera, &settings, [60, 50]);
-        renderer
-            .render(&scene, &[])
-            .expect("a picture")
-            .picture
-            .pixels
-    };
-    assert!(all != other);
+    assert!(all != part(0, 6, 1, 100.0));
 }
 
 /// Without scattering a path brings the colour of its first collision: the composite.
@@ -462,10 +492,7 @@ fn without_bounces_the_picture_is_the_composite() {
         let off = pairs().map(|(a, b)| f64::from(a[channel] - b[channel]));
         let variance = pairs().map(|(_, b)| f64::from(b[3] * (1.0 - b[3])) / 32.0);
         let (off, error) = (off.sum::<f64>() / n, variance.sum::<f64>().sqrt() / n);
-        assert!(
-            off.abs() < 4.0 * error + 2e-4,
-            "{channel}: {off} +- {error}"
-        );
+        assert!(off.abs() < 4.0 * error, "{channel}: {off} +- {error}");
         assert!(error < 2e-3);
     }
 }
