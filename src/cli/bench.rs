@@ -36,7 +36,7 @@ pub struct Bench {
     /// Further volumes of the table
     #[arg(value_name = "INPUT")]
     more: Vec<String>,
-    /// Techniques of the table [default: that of --technique, else all but pathtrace, which has no number of samples]
+    /// Techniques of the table [default: that of --technique, else all but pathtrace, whose samples are paths]
     #[arg(
         long,
         value_name = "NAME,...",

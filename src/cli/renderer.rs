@@ -290,8 +290,13 @@ impl<'a> Renderer<'a> {
     }
 
     /// The samples that the picture of this camera takes, rays through the middles of pixels alone. Draws once
-    /// more to count them.
+    /// more to count them; paths are as many as were asked for.
     pub fn samples(&mut self, camera: &Camera) -> Result<u64, Error> {
+        let settings = self.job.settings;
+        if settings.technique.traces_paths() {
+            let [width, height] = self.job.extent_pixels.map(u64::from);
+            return Ok(width * height * u64::from(settings.path.samples));
+        }
         let picture = self.draw_with(camera, &[LayerKind::Samples])?.picture;
         let counts = picture.layers.iter().flat_map(|layer| &layer.values);
         Ok(counts.map(|&count| count as u64).sum())

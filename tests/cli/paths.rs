@@ -102,3 +102,20 @@ fn what_paths_do_not_go_with_is_refused_by_name() {
         ran.err
     );
 }
+
+#[test]
+fn the_samples_of_paths_are_their_number() {
+    let folder = Folder::new();
+    let words = "phantom:head,n=24 --technique pathtrace --size 24x20 --spp 3";
+    folder
+        .run(&format!("render {words} -o a.png --timings t.json"))
+        .assert_done();
+    let text = fs::read_to_string(folder.path("t.json")).expect("timings");
+    assert!(text.contains("\"samples\": 1440"), "{text}");
+    let ran = folder.run(&format!("bench {words} --repeat 1 --json b.json"));
+    ran.assert_done();
+    let ran = folder.run(&format!("animate {words} --turntable 2 -o f.gif"));
+    ran.assert_done();
+    let ran = folder.run(&format!("render {words} --stream -o b.png"));
+    ran.assert_refused(2, &["pathtrace"]);
+}

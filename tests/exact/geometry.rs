@@ -177,6 +177,8 @@ fn what_cannot_show_geometry_says_so() {
     for (technique, uneven_rays) in [
         (Technique::Slices3d, false),
         (Technique::ShearWarp, false),
+        (Technique::Splat, false),
+        (Technique::Pathtrace, false),
         (Technique::Raycast, true),
     ] {
         let settings = Settings {

@@ -159,7 +159,7 @@ pub fn measured(bench: &Bench, scene: &SceneFlags) -> Result<String, Error> {
 }
 
 impl Bench {
-    /// The pictures of one mode; by all techniques that take a number of samples, unless words say which.
+    /// The pictures of one mode. Paths, which take far longer, only where a word says so.
     fn ways(&self, scene: &SceneFlags, mode: Mode) -> Vec<Way> {
         let all = Technique::value_variants().iter().copied();
         let all: Vec<_> = all.filter(|one| !one.traces_paths()).collect();
@@ -189,10 +189,6 @@ impl Bench {
         way: Way,
         extent_pixels: [u32; 2],
     ) -> Result<Measured, Error> {
-        if way.technique.traces_paths() {
-            let why = "paths of random lengths have no number of samples";
-            return Ok(Measured::Cannot(why.to_owned()));
-        }
         let mut camera = scene.camera.clone();
         camera.projection = Some(way.projection);
         let camera = camera.camera(&shown.subject(), extent_pixels)?;

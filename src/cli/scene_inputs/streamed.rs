@@ -30,7 +30,7 @@ pub fn is_wanted(
         () if scene.has_lines() => Some("--flow and --map"),
         () if scene.denoise.is_some() => Some("--denoise"),
         () if !settings.technique.streams() => {
-            Some("--technique slices-3d, slices-2d, shear-warp and splat")
+            Some("--technique slices-3d, slices-2d, shear-warp, splat and pathtrace")
         }
         () if settings.filter.spline().is_some() => Some("--filter quadratic and cubic"),
         () if settings.wants_light_volume() => Some("--ambient-occlusion and --shadows"),

@@ -19,7 +19,7 @@ use crate::named::Named;
 use crate::offscreen::Error;
 use crate::picture::{ColorSpace, Picture};
 use crate::scene::{Scene, positions_in_pixel};
-use crate::technique::{self, InPixel, Settings, Technique};
+use crate::technique::{self, InPixel, Settings};
 use ash::vk;
 use std::sync::Arc;
 
@@ -102,8 +102,9 @@ pub fn check_geometry(settings: &Settings) -> Result<(), technique::Error> {
             found: found.to_owned(),
         })
     };
+    let technique = settings.technique;
     match () {
-        () if settings.technique != Technique::Raycast => refuse(settings.technique.name()),
+        () if !technique.has_depth() || technique.splats() => refuse(technique.name()),
         () if settings.uneven_rays => refuse("rays at uneven places"),
         () => Ok(()),
     }
