@@ -14,11 +14,13 @@
 #import mask
 #import holes_{holes}
 #import transfer_{transfer}
+#import gradient_central
 #import distance_map
 #import majorants
 #import random
 #import elementary
 #import phase
+#import surface
 
 // Mean radiance of paths, and which part of them has met matter.
 @group(0) @binding(6) var picture: texture_storage_2d<rgba32float, read_write>;
@@ -61,6 +63,7 @@ struct Collision {
     direction: vec3<f32>,
     // 0: in the medium.
     normal: vec3<f32>,
+    albedo: vec3<f32>,
     // What arrives if nothing is in the way, and the part of it that does.
     light: vec3<f32>,
     through: f32,
@@ -89,7 +92,8 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
             key.y = sample;
             key.z = 0u;
             sample++;
-            walk = walk_along(pixel_ray(vec2<f32>(pixel) + random_numbers(key).xy));
+            let numbers = random_numbers(key);
+            walk = walk_along(through_lens(pixel_ray(vec2<f32>(pixel) + numbers.xy), numbers.zw));
             path = Path(vec3(1.0), vec3(0.0), 0u, 1u, false);
             state = PATH;
         }
@@ -126,11 +130,16 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
             if path.bounces == frame.path_bounces {
                 state = NEXT;
             } else {
-                path.weight *= color * frame.path_albedo;
                 key.z |= OF_COLLISION;
                 let numbers = random_numbers(key);
-                at = Collision(walk.world.origin + walk.t * walk.world.direction, walk.world.direction, vec3(0.0), vec3(0.0), 1.0);
+                at.place = walk.world.origin + walk.t * walk.world.direction;
+                at.direction = walk.world.direction;
                 at.normal = normal_at(place, at.direction, numbers.x);
+                at.albedo = color * frame.path_albedo;
+                at.through = 1.0;
+                if !is_coated(at) {
+                    path.weight *= at.albedo;
+                }
                 let to_light = light_at(&at, numbers);
                 state = SCATTER;
                 if any(path.weight * at.light > vec3(0.0)) {
@@ -143,8 +152,10 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
             key.z = path.draw | OF_DIRECTION;
             let numbers = random_numbers(key);
             path.bounces++;
+            let next = scattered(at, numbers);
+            path.weight *= next.weight;
             path.weight *= kept(path, numbers.x);
-            walk = walk_along(Ray(at.place, scattered(at, numbers)));
+            walk = walk_along(Ray(at.place, next.direction));
             state = select(NEXT, PATH, any(path.weight > vec3(0.0)));
         }
         if state == NEXT {
@@ -152,6 +163,17 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
         }
     }
     textureStore(picture, pixel, sum / f32(frame.path_count));
+}
+
+// Rays through a thin lens meet where they meet the plane of focus.
+fn through_lens(ray: Ray, numbers: vec2<f32>) -> Ray {
+    if frame.path_focus == 0.0 {
+        return ray;
+    }
+    let at_focus = frame.path_focus / dot(frame.forward, ray.direction) * ray.direction;
+    let place = sqrt(numbers.x) * turned(numbers.y);
+    let beside = place.x * frame.path_lens_right + place.y * frame.path_lens_up;
+    return Ray(ray.origin + beside, direction_of(at_focus - beside));
 }
 
 // The part of a ray that lies in the domain.
@@ -194,15 +216,7 @@ fn normal_at(place: vec3<f32>, direction: vec3<f32>, u: f32) -> vec3<f32> {
     if frame.path_surface == 0.0 {
         return vec3(0.0);
     }
-    let x = vec3(1.0, 0.0, 0.0);
-    let y = vec3(0.0, 1.0, 0.0);
-    let z = vec3(0.0, 0.0, 1.0);
-    let slope = 0.5 * vec3(
-        volume_value(place + x) - volume_value(place - x),
-        volume_value(place + y) - volume_value(place - y),
-        volume_value(place + z) - volume_value(place - z),
-    );
-    let gradient = (frame.voxel_from_world * slope).xyz;
+    let gradient = gradient_of(central_slope(place));
     let steepness = sqrt(dot(gradient, gradient));
     if steepness <= frame.flat_gradient || u >= 1.0 - exp(-frame.path_surface * steepness) {
         return vec3(0.0);
@@ -221,20 +235,25 @@ fn light_at(at: ptr<function, Collision>, numbers: vec4<f32>) -> vec3<f32> {
     let i = min(u32(numbers.y * count), frame.light_count - 1u);
     let axis = frame.light_directions[i].xyz;
     let way = around(axis, 1.0 - numbers.z * frame.path_light_size, numbers.w);
-    var part = 3.1415927 * phase_value(dot((*at).direction, way));
+    var part = vec3(3.1415927 * phase_value(dot((*at).direction, way)));
     if any((*at).normal != vec3(0.0)) {
-        part = max(dot((*at).normal, way), 0.0);
+        part = reflected((*at).normal, -(*at).direction, way, (*at).albedo);
     }
     (*at).light = count * part * frame.light_colors[i].xyz;
     return way;
 }
 
-// Where the path goes on: by the phase function, or by the cosine to the normal of a surface (Lambert).
-fn scattered(at: Collision, numbers: vec4<f32>) -> vec3<f32> {
+// Where the path goes on: by the phase function, or as a surface reflects.
+fn scattered(at: Collision, numbers: vec4<f32>) -> Reflection {
     if any(at.normal != vec3(0.0)) {
-        return around(at.normal, sqrt(1.0 - numbers.z), numbers.w);
+        return reflection(at.normal, -at.direction, at.albedo, numbers);
     }
-    return around(at.direction, phase_cosine(numbers.y, numbers.z), numbers.w);
+    return Reflection(around(at.direction, phase_cosine(numbers.y, numbers.z), numbers.w), vec3(1.0));
+}
+
+// Whether its albedo is only a part of what is reflected there.
+fn is_coated(at: Collision) -> bool {
+    return frame.path_f0 > 0.0 && any(at.normal != vec3(0.0));
 }
 
 // Roulette: what the weight is multiplied by, 0 where the path ends. Paths of very many turns end by chance too.

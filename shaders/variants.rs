@@ -502,7 +502,8 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         &[SHEETS, constant("mode", &["mip", "minip", "sum"]), HOLES],
     ),
     ("splat_points", &[TRANSFER]),
-    ("pathtrace", &[NARROW, HOLES, TRANSFER]),
+    ("pathtrace", &[NARROW, HOLES, TRANSFER, TAPS]),
+    ("pathtrace", &[CORNERS, HOLES, STORED, SHARED]),
     (
         "splat_points_projection",
         &[constant("mode", &["mip", "minip", "sum"])],

@@ -39,6 +39,18 @@ fn turned(part: f32) -> vec2<f32> {
     }
 }
 
+// Which part of a turn a vector points to from x on, -1/2 to 1/2: of half the angle, tan h = y / (x + norm), twice, then
+// Taylor's series.
+fn turn_of(vector: vec2<f32>) -> f32 {
+    let half = vec2(abs(vector.x) + sqrt(dot(vector, vector)), abs(vector.y));
+    let t = half.y / max(half.x + sqrt(dot(half, half)), 1e-30);
+    let q = t * t;
+    let series = 1.0 + q * (-1.0 / 3.0 + q * (1.0 / 5.0 + q * (-1.0 / 7.0 + q * (1.0 / 9.0 + q * (-1.0 / 11.0)))));
+    let quarter = 0.63661977 * t * series;
+    let turn = select(0.5 - quarter, quarter, vector.x >= 0.0);
+    return select(-turn, turn, vector.y >= 0.0);
+}
+
 // The direction at this cosine and part of a turn around a unit vector (Duff et al., "Building an Orthonormal Basis,
 // Revisited", JCGT 6(1), 2017).
 fn around(axis: vec3<f32>, cosine: f32, part: f32) -> vec3<f32> {

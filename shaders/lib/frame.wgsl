@@ -241,8 +241,15 @@ struct Frame {
     path_albedo: f32,
     // A collision at gradient g (value per world length) is one with a surface by the chance 1 - exp(-path_surface g).
     path_surface: f32,
+    // Surfaces: reflectance at right angles, 0: Lambert; and the square of the roughness.
+    path_f0: f32,
+    path_alpha: f32,
     // 1 - cosine of half the angle that a light is wide.
     path_light_size: f32,
+    // A thin lens: half of its width to the right and up, and how far away along `forward` is sharp; 0: none.
+    path_lens_right: vec3<f32>,
+    path_focus: f32,
+    path_lens_up: vec3<f32>,
     // Paths of more turns end by chance.
     path_turns: u32,
     // Bin (value - first) * scale; row r holds at i the largest of the bins i to i + 2^r - 1, times density.

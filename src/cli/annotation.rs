@@ -85,6 +85,9 @@ pub fn finish(
     format: PictureFormat,
 ) -> Result<(), Error> {
     let behind = annotation.and_then(|annotation| annotation.transmittance(picture));
+    if format == PictureFormat::Png {
+        picture.apply_tone(view.scene.picture.tone());
+    }
     if let Some(background) = background {
         picture.over_background(background);
     }

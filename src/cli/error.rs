@@ -30,6 +30,9 @@ pub enum Error {
     /// The words are no command; the text says so at length and in colours of its own.
     #[error("{0}")]
     Arguments(String),
+    /// The picture was asked to end early, and is written.
+    #[error("interrupted: the picture is the mean of the paths that it had")]
+    Interrupted,
     /// Another program that was started ended with this code, and has said why.
     #[error("exit code {0}")]
     Other(u8),
@@ -220,6 +223,7 @@ impl Error {
         match self {
             Self::Differs(_) => 1,
             Self::Other(code) => *code,
+            Self::Interrupted => INTERRUPTED,
             Self::Arguments(_)
             | Self::Usage { .. }
             | Self::NotBuilt(_)
@@ -292,6 +296,7 @@ impl Error {
             ),
             Self::Arguments(_)
             | Self::Other(_)
+            | Self::Interrupted
             | Self::Differs(_)
             | Self::ReadPicture(_)
             | Self::Input { .. }

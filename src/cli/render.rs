@@ -20,9 +20,11 @@ use super::{
 };
 use crate::annotate::Annotation;
 use crate::format::{self, write::has_coarser_levels};
+use crate::offscreen::Traced;
 use crate::picture::{
     BitDepth, EncodedPicture, LayerKind, PictureFormat, WriteOptions, write_picture,
 };
+use crate::technique::Settings;
 use clap::Args;
 use std::{
     io::IsTerminal,
@@ -211,6 +213,9 @@ impl Render {
             camera, settings, ..
         } = view;
         renderer.watch(|part| progress.part(part));
+        if scene.traces_paths() {
+            renderer.end_paths_when(gate.ends_early());
+        }
         let mut frames = Vec::new();
         let mut last = None;
         for done in 0..self.repeat {
@@ -224,6 +229,12 @@ impl Render {
             last = Some(frame.picture);
         }
         let mut picture = last.expect("at least one picture is drawn");
+        if let Some(note) = renderer
+            .traced()
+            .and_then(|traced| said_of(traced, settings))
+        {
+            progress.note(&note);
+        }
         let start = Instant::now();
         let reasoned = parts.only(classification);
         if !panels.are_several()
@@ -312,7 +323,10 @@ impl Render {
             };
             write_whole(path, timings.json().as_bytes(), self.force, gate)?;
         }
-        Ok(())
+        match gate.was_asked() {
+            true => Err(Error::Interrupted),
+            false => Ok(()),
+        }
     }
 
     /// The flags laid over those of `--scene`.
@@ -350,6 +364,17 @@ impl Render {
         outputs.extend(self.save_scene.iter().chain(&self.timings).cloned());
         outputs
     }
+}
+
+/// Of a picture of paths whose number no flag has said.
+fn said_of(traced: Traced, settings: &Settings) -> Option<String> {
+    let path = &settings.path;
+    let is_known = path.noise.is_none() && path.seconds.is_none() && traced.paths == path.samples;
+    let paths = traced.paths;
+    (!is_known).then(|| match traced.noise {
+        Some(noise) => format!("{paths} paths a pixel, noise {noise:.2e} of the light"),
+        None => format!("{paths} paths a pixel"),
+    })
 }
 
 /// The name of a picture whose volume has none.

@@ -13,13 +13,14 @@ use super::{
 use crate::{
     camera::Camera,
     gpu::{DeviceChoice, Headless, Options},
-    offscreen::{self, Ceilings, Kept, Stream, reference},
+    offscreen::{self, Ceilings, Kept, Stream, Traced, reference},
     picture::{LayerKind, Picture},
     scene::{Beside, Scene},
     technique::{Filter, Mode, Role, Settings, layers::Lack},
     volume::{Denoise, Volume, labels::labels_of},
 };
 use std::panic::resume_unwind;
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Instant;
@@ -266,6 +267,20 @@ impl<'a> Renderer<'a> {
         }
     }
 
+    /// From here on a picture of paths ends early once `asked` is true; those of the CPU references go on.
+    pub fn end_paths_when(&mut self, asked: Arc<AtomicBool>) {
+        if let Some(renderer) = &mut self.on_device {
+            renderer.end_paths_when(asked);
+        }
+    }
+
+    /// What the last picture of paths took; `None` of the CPU references and of other techniques.
+    pub fn traced(&self) -> Option<Traced> {
+        let renderer = self.on_device.as_ref()?;
+        let traces = self.job.settings.technique.traces_paths();
+        traces.then(|| renderer.traced())
+    }
+
     /// From here on values are seen so, and so is computed.
     pub fn change(&mut self, classification: &'a Classification, settings: &'a Settings) {
         self.job.classification = classification;
@@ -290,12 +305,15 @@ impl<'a> Renderer<'a> {
     }
 
     /// The samples that the picture of this camera takes, rays through the middles of pixels alone. Draws once
-    /// more to count them; paths are as many as were asked for.
+    /// more to count them; paths are those of the last picture.
     pub fn samples(&mut self, camera: &Camera) -> Result<u64, Error> {
         let settings = self.job.settings;
         if settings.technique.traces_paths() {
             let [width, height] = self.job.extent_pixels.map(u64::from);
-            return Ok(width * height * u64::from(settings.path.samples));
+            let paths = self
+                .traced()
+                .map_or(settings.path.samples, |traced| traced.paths);
+            return Ok(width * height * u64::from(paths));
         }
         let picture = self.draw_with(camera, &[LayerKind::Samples])?.picture;
         let counts = picture.layers.iter().flat_map(|layer| &layer.values);

@@ -7,7 +7,10 @@
 use super::output::say_aside;
 use std::{
     path::PathBuf,
-    sync::{Arc, Mutex, MutexGuard, PoisonError},
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
     time::Instant,
 };
 
@@ -19,7 +22,15 @@ pub const INTERRUPTED: u8 = 130;
 #[derive(Clone, Debug)]
 pub struct Gate {
     unfinished: Arc<Mutex<Option<Unfinished>>>,
+    early: Arc<Early>,
     begun: Instant,
+}
+
+/// Work that the first interrupt ends early, with what there is.
+#[derive(Debug, Default)]
+struct Early {
+    is_possible: AtomicBool,
+    asked: Arc<AtomicBool>,
 }
 
 /// A file that is being written.
@@ -35,6 +46,7 @@ impl Default for Gate {
     fn default() -> Self {
         Self {
             unfinished: Arc::default(),
+            early: Arc::default(),
             begun: Instant::now(),
         }
     }
@@ -44,6 +56,17 @@ impl Gate {
     /// When the program began.
     pub fn begun(&self) -> Instant {
         self.begun
+    }
+
+    /// From here on the first interrupt does not end the process but sets the flag, which ends what is being made early.
+    pub fn ends_early(&self) -> Arc<AtomicBool> {
+        self.early.is_possible.store(true, Ordering::SeqCst);
+        Arc::clone(&self.early.asked)
+    }
+
+    /// Whether something was asked to end early.
+    pub fn was_asked(&self) -> bool {
+        self.early.asked.load(Ordering::SeqCst)
     }
 
     /// Runs `write` so that no interrupt comes between its beginning and its end.
@@ -90,6 +113,12 @@ pub fn install(gate: &Gate) {
     let gate = gate.clone();
     // A second call in one process is refused by ctrlc: the first handler stays, which is as good.
     let _ = ctrlc::set_handler(move || {
+        let early = &gate.early;
+        if early.is_possible.load(Ordering::SeqCst) && !early.asked.swap(true, Ordering::SeqCst) {
+            return say_aside(
+                "interrupted: the picture is written with the paths that it has; once more stops at once",
+            );
+        }
         let unfinished = gate.held();
         match unfinished.as_ref() {
             Some(Unfinished::Removed(part)) => drop(std::fs::remove_file(part)),

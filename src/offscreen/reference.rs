@@ -72,15 +72,22 @@ fn render_unlabeled<R: Real>(scene: &Scene) -> Result<Picture, Error> {
 
 /// Paths in two halves, and what both say without noise.
 fn render_denoised<R: Real>(scene: &Scene) -> Result<Picture, Error> {
-    let of_half = |path: &PathTracing| {
+    let path = &scene.settings.path;
+    let of_half = |first_sample, samples| {
         let settings = &Settings {
-            path: path.clone(),
+            path: PathTracing {
+                first_sample,
+                samples,
+                denoise: false,
+                ..path.clone()
+            },
             ..scene.settings.clone()
         };
         render_one::<R>(&Scene { settings, ..*scene })
     };
-    let halves = scene.settings.path.halves();
-    let [first, second] = [of_half(&halves[0])?, of_half(&halves[1])?];
+    let half = path.samples.div_ceil(2);
+    let first = of_half(path.first_sample, half)?;
+    let second = of_half(path.first_sample + half, path.samples - half)?;
     let pixels = denoised([&first.pixels, &second.pixels], first.width as usize);
     Ok(Picture { pixels, ..first })
 }

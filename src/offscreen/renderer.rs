@@ -51,6 +51,8 @@ pub use filtered::Filtered;
 use gather::points_at_once;
 pub use kept::Kept;
 use pacing::{Known, passes_of};
+use paths::Ends;
+pub use paths::Traced;
 use skipping::Skipped;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -95,6 +97,7 @@ pub struct Renderer<'v> {
     passes_done: [usize; 2],
     /// Geometry in the pictures.
     behind: Option<Behind>,
+    path_ends: Ends,
     device: Headless,
 }
 

@@ -16,6 +16,7 @@ mod png;
 mod read;
 mod srgb_codes;
 mod straight;
+mod tone;
 #[cfg(feature = "files")]
 mod write;
 
@@ -24,6 +25,7 @@ pub use crate::color::ColorSpace;
 pub use place::OutputFile;
 #[cfg(feature = "files")]
 pub use read::{MAX_PICTURE_BYTES, PictureError, PictureProblem, read_image};
+pub use tone::{Tone, ToneCurve};
 #[cfg(feature = "files")]
 pub use write::{
     BitDepth, EncodedPicture, OutputError, OutputProblem, PictureFormat, WriteOptions, write_file,

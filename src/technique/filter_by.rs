@@ -23,14 +23,14 @@ pub enum FilterBy {
 }
 
 impl Settings {
-    /// Whether pictures of one volume read its [`FootprintTexels`](crate::resident::FootprintTexels), where it has them: those of rays
-    /// and of view-aligned slices, linear.
+    /// Whether pictures of one volume read its [`FootprintTexels`](crate::resident::FootprintTexels), where it has them: those of rays,
+    /// paths and view-aligned slices, linear.
     pub fn reads_footprint_texels(&self, mix: SampleInputs) -> bool {
         let is_slab =
             self.preintegrated && (!self.technique.casts_rays() || self.has_general_light());
         let is_free = !self.conformance && !is_slab;
         // Splats read voxels one by one, from the texture itself.
-        let is_splatted = self.technique.splats() || self.technique.traces_paths();
+        let is_splatted = self.technique.splats();
         let has_such = !self.technique.draws_stacks() && !self.is_half_angle() && !is_splatted;
         let is_wished = self.filter_by != FilterBy::Sampler;
         mix.is_of_one() && has_such && is_free && is_wished && self.filter == Filter::Linear

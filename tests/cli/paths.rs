@@ -42,6 +42,13 @@ fn flags_win_over_the_look_and_change_the_picture() {
         "--surface-scattering 0",
         "--light 0,0,1",
         "--light-size 0",
+        "--f0 0.9",
+        "--roughness 0.1",
+        "--aperture-radius 4",
+        "--aperture-radius 4 --focus-distance 20",
+        "--tone none",
+        "--tone filmic",
+        "--exposure=-1",
         "--technique raycast",
         "--device reference",
     ] {
@@ -85,6 +92,17 @@ fn what_paths_do_not_go_with_is_refused_by_name() {
         ("--spp 0", "--spp"),
         ("--spp 3 --denoise-picture", "4 or more"),
         ("--surface-scattering=-1", "surfaces"),
+        ("--f0 2", "reflectance"),
+        ("--roughness 0", "0.05 to 1"),
+        ("--aperture-radius 0", "--aperture-radius"),
+        (
+            "--aperture-radius 1 --projection orthographic",
+            "perspective",
+        ),
+        ("--focus-distance 1", "--aperture-radius"),
+        ("--noise 0", "--noise"),
+        ("--seconds=-1", "--seconds"),
+        ("--exposure 99", "-64 to 64"),
     ] {
         let ran = folder.run(&format!(
             "render phantom:sphere,n=8 --technique pathtrace {words} -o q.png --size 20x20"
@@ -118,4 +136,46 @@ fn the_samples_of_paths_are_their_number() {
     ran.assert_done();
     let ran = folder.run(&format!("render {words} --stream -o b.png"));
     ran.assert_refused(2, &["pathtrace"]);
+}
+
+#[test]
+fn pictures_that_end_by_themselves_say_how_many_paths_they_have() {
+    let folder = Folder::new();
+    let words = "render phantom:head,n=24 --technique pathtrace --size 24x20 --force -o a.png";
+    let ran = folder.run(&format!("{words} --noise 0.5 --timings t.json"));
+    ran.assert_done();
+    assert!(ran.err.contains("16 paths a pixel, noise"), "{}", ran.err);
+    let text = fs::read_to_string(folder.path("t.json")).expect("timings");
+    assert!(text.contains("\"samples\": 7680"), "{text}");
+    let ran = folder.run(&format!("{words} --seconds 0.000001"));
+    ran.assert_done();
+    assert!(ran.err.contains("paths a pixel"), "{}", ran.err);
+    let ran = folder.run(&format!("{words} --spp 4"));
+    ran.assert_done();
+    assert!(!ran.err.contains("paths a pixel"), "{}", ran.err);
+}
+
+/// PNG goes through a tone curve; numbers of light do not.
+#[test]
+fn tone_is_for_screens_alone() {
+    let folder = Folder::new();
+    for (name, words) in [("a", ""), ("b", "--tone neutral --exposure 1")] {
+        for ending in ["npy", "png"] {
+            folder
+                .run(&format!(
+                    "render phantom:head,n=24 --size 24x20 -o {name}.{ending} {words}"
+                ))
+                .assert_done();
+        }
+    }
+    let read = |name| fs::read(folder.path(name)).expect("a file");
+    assert!(read("a.npy") == read("b.npy"));
+    assert!(read("a.png") != read("b.png"));
+    folder
+        .run("animate phantom:head,n=24 --size 24x20 --turntable 1 -o b.apng --tone neutral --exposure 1")
+        .assert_done();
+    folder
+        .run("animate phantom:head,n=24 --size 24x20 --turntable 1 -o a.apng")
+        .assert_done();
+    assert!(read("a.apng") != read("b.apng"));
 }

@@ -337,6 +337,9 @@ impl Drawing<'_> {
     ) -> Result<Encoded, Error> {
         let annotation = self.annotation.as_ref();
         let behind = annotation.and_then(|annotation| annotation.transmittance(&picture));
+        if self.format == PictureFormat::Png {
+            picture.apply_tone(self.scene.picture.tone());
+        }
         for &color in &self.background {
             picture.over_background(color);
         }

@@ -1,6 +1,6 @@
 //! `--look`: which defaults hold where no flag says otherwise.
 
-use super::{LightWord, Numbers, SceneFlags};
+use super::{LightWord, Numbers, SceneFlags, ToneWord};
 use crate::cli::progress::Progress;
 use crate::technique::{Mode, Technique};
 use crate::volume::Header;
@@ -71,6 +71,9 @@ impl SceneFlags {
         path.environment.get_or_insert(Numbers([SKY; 3]));
         path.surface_scattering.get_or_insert(SURFACE);
         path.density_scale.get_or_insert(DENSITY);
+        path.f0.get_or_insert(F0);
+        path.roughness.get_or_insert(ROUGHNESS);
+        self.picture.tone.get_or_insert(ToneWord::Neutral);
         path.denoise_picture |= path.spp.is_none_or(|paths| paths >= LEAST_DENOISED);
         if self.light.light.is_empty() {
             self.light
@@ -87,5 +90,8 @@ const KEY_LIGHT_DEGREES: f64 = 40.0;
 const SKY: f64 = 0.35;
 const SURFACE: f64 = 8.0;
 const DENSITY: f64 = 0.5;
+/// Of skin, bone and plastic.
+const F0: f64 = 0.04;
+const ROUGHNESS: f64 = 0.45;
 /// Paths a pixel that tell what is noise.
 const LEAST_DENOISED: u32 = 4;

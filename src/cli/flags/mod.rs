@@ -61,7 +61,7 @@ pub use modes::ModeFlags;
 pub use numbers::{Background, Numbers, Size, finite, positive};
 pub use opacity::OpacityFlags;
 pub use paths::PathFlags;
-pub use picture::PictureFlags;
+pub use picture::{PictureFlags, ToneWord};
 pub use point_grid::{PointGrid, PointGridFlags};
 pub use points::PointLookFlags;
 pub use sampling::{Depth, SamplingFlags};

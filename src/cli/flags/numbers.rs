@@ -164,6 +164,14 @@ pub fn positive(text: &str) -> Result<f64, String> {
     })
 }
 
+/// Stops of light, -64 to 64: what f32 has room for.
+pub fn stops(text: &str) -> Result<f64, String> {
+    finite(text).and_then(|number| match number.abs() <= 64.0 {
+        true => Ok(number),
+        false => Err(format!("wanted stops from -64 to 64, found {text}")),
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

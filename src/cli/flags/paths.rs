@@ -2,7 +2,7 @@
 
 use super::numbers::positive;
 use super::{LightFlags, Numbers, finite};
-use crate::technique::pathtrace::{PathTracing, Phase};
+use crate::technique::pathtrace::{Lens, PathTracing, Phase};
 use crate::technique::{Light, LightSpace};
 use clap::Args;
 use glam::DVec3;
@@ -19,6 +19,15 @@ pub struct PathFlags {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_PATHS), help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spp: Option<u32>,
+    /// End where the error of the picture is this part of its light, 0.01: 1 %; looked at after 16, 32, 64 and so on paths,
+    /// up to --spp [default: none; with it or --seconds, --spp is 4096]
+    #[arg(long, value_name = "PART", value_parser = positive, help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub noise: Option<f64>,
+    /// End after so many seconds of tracing, with the paths that there are: the picture then hangs on the machine
+    #[arg(long, value_name = "S", value_parser = positive, help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seconds: Option<f64>,
     /// Other numbers, other noise [default: 0]
     #[arg(long, value_name = "N", help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -51,6 +60,23 @@ pub struct PathFlags {
     #[arg(long, value_name = "S", value_parser = finite, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub surface_scattering: Option<f64>,
+    /// How much of light surfaces mirror that they are seen across: 0.04 for skin, bone and plastic, 1 for metal; 0: they
+    /// reflect as Lambert says [default: 0]
+    #[arg(long, value_name = "F", value_parser = finite, help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub f0: Option<f64>,
+    /// How wide reflections are that --f0 asks for, from 0.05, polished, to 1 [default: 0.4]
+    #[arg(long, value_name = "F", value_parser = finite, help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub roughness: Option<f64>,
+    /// Depth of field: half of the width of the lens, world length [default: none, all is sharp]
+    #[arg(long, value_name = "LENGTH", value_parser = positive, help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub aperture_radius: Option<f64>,
+    /// How far ahead of the eye is sharp, world length [default: where the camera is turned to]
+    #[arg(long, value_name = "LENGTH", value_parser = positive, requires = "aperture_radius", help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub focus_distance: Option<f64>,
     /// Take the noise out of the picture, by what two halves of the paths say of it; 4 paths at least
     #[arg(long, help_heading = HEADING)]
     #[serde(skip_serializing_if = "std::ops::Not::not")]
@@ -59,6 +85,8 @@ pub struct PathFlags {
 
 /// Their number is an f32 somewhere.
 const MOST_PATHS: i64 = 1 << 20;
+/// Where something else ends the picture.
+const MOST_UNASKED: u32 = 4096;
 
 impl PathFlags {
     /// What paths are, with the lights that others name.
@@ -73,7 +101,12 @@ impl PathFlags {
             });
         }
         PathTracing {
-            samples: self.spp.unwrap_or(default.samples),
+            samples: self.spp.unwrap_or(match self.noise.or(self.seconds) {
+                Some(_) => MOST_UNASKED,
+                None => default.samples,
+            }),
+            noise: self.noise,
+            seconds: self.seconds,
             seed: self.seed.unwrap_or(default.seed),
             bounces: self.bounces,
             density: self.density_scale.unwrap_or(default.density),
@@ -84,6 +117,12 @@ impl PathFlags {
             sky: self.environment.map_or(default.sky, |numbers| numbers.0),
             denoise: self.denoise_picture,
             surface: self.surface_scattering.unwrap_or(default.surface),
+            f0: self.f0.unwrap_or(default.f0),
+            roughness: self.roughness.unwrap_or(default.roughness),
+            lens: self.aperture_radius.map(|radius| Lens {
+                radius,
+                focus: self.focus_distance,
+            }),
             ..default
         }
     }
@@ -93,7 +132,7 @@ impl PathFlags {
         match *self == Self::default() {
             true => Vec::new(),
             false => vec![
-                "--spp, --seed, --bounces, --density-scale, --albedo, --phase, --environment, --surface-scattering and --denoise-picture have no effect without --technique pathtrace",
+                "--spp, --noise, --seconds, --seed, --bounces, --density-scale, --albedo, --phase, --environment, --surface-scattering, --f0, --roughness, --aperture-radius, --focus-distance and --denoise-picture have no effect without --technique pathtrace",
             ],
         }
     }

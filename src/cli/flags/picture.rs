@@ -1,7 +1,8 @@
 //! How large the picture is, what lies behind the volume, and which layers go with it.
 
+use super::numbers::stops;
 use super::{Background, Error, Size};
-use crate::picture::{BitDepth, LayerKind};
+use crate::picture::{BitDepth, LayerKind, Tone, ToneCurve};
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
 
@@ -31,6 +32,26 @@ pub struct PictureFlags {
     #[arg(long, value_name = "8|16", value_parser = bits_of, help_heading = "Picture")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bit_depth: Option<Bits>,
+    /// Stops of light: colours of PNG and films are multiplied by 2 to this power before they are coded [default: 0]
+    #[arg(long, value_name = "EV", value_parser = stops, allow_hyphen_values = true, help_heading = "Picture")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub exposure: Option<f64>,
+    /// What PNG and films do with light near white and over it [default: none; neutral under --look cinematic]
+    #[arg(long, value_enum, value_name = "CURVE", help_heading = "Picture")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tone: Option<ToneWord>,
+}
+
+/// Every word of `--tone`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ToneWord {
+    /// Cut off: every technique shows the same colours
+    None,
+    /// Colours stay, and bright ones fade to white (Khronos PBR neutral)
+    Neutral,
+    /// Soft in the dark and in the light (Hable)
+    Filmic,
 }
 
 /// Bits of a channel; a scene file has them as a number.
@@ -92,6 +113,18 @@ impl PictureFlags {
         match self.background {
             Some(Background::Color(color)) => Some(color),
             Some(Background::None) | None => None,
+        }
+    }
+
+    /// What PNG and films are sent through.
+    pub fn tone(&self) -> Tone {
+        Tone {
+            exposure: self.exposure.unwrap_or(0.0),
+            curve: match self.tone {
+                None | Some(ToneWord::None) => ToneCurve::None,
+                Some(ToneWord::Neutral) => ToneCurve::Neutral,
+                Some(ToneWord::Filmic) => ToneCurve::Filmic,
+            },
         }
     }
 

@@ -28,11 +28,16 @@ pub enum PointsWord {
 #[serde(default, deny_unknown_fields)]
 pub struct PointLookFlags {
     /// What stands for a scattered point [default: splats]
-    #[arg(long, value_enum, value_name = "LOOK", help_heading = "Lines")]
+    #[arg(
+        long,
+        value_enum,
+        value_name = "LOOK",
+        help_heading = "Scattered points"
+    )]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub points_as: Option<PointsWord>,
     /// How wide the largest sphere is, in pixels where the camera is turned to [default: 14]
-    #[arg(long, value_parser = positive, value_name = "PX", help_heading = "Lines")]
+    #[arg(long, value_parser = positive, value_name = "PX", help_heading = "Scattered points")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sphere_size: Option<f64>,
 }

@@ -6,7 +6,10 @@ use crate::offscreen::keyed::Keyed;
 use crate::offscreen::passes::Passes;
 use crate::offscreen::targets::Targets;
 use crate::offscreen::time_slices::TimeSlices;
-use crate::offscreen::{Error, renderer::Skipped};
+use crate::offscreen::{
+    Error,
+    renderer::{Ends, Skipped},
+};
 use crate::technique::parameter_ring;
 use crate::volume::Volume;
 use std::collections::HashMap;
@@ -77,6 +80,7 @@ impl<'v> Renderer<'v> {
             changes: 0,
             passes_done: [0, 1],
             behind: None,
+            path_ends: Ends::default(),
             device,
         })
     }

@@ -10,37 +10,39 @@
 //! Weights by one half filter the other, so that what is noise in both is not kept for detail. A picture without noise stays
 //! as it is.
 
-const WINDOW: i32 = 7;
-const PATCH: i32 = 2;
+const WINDOW: usize = 7;
+const SIDE: usize = 2 * WINDOW + 1;
+const PATCH: usize = 2;
+const TAPS: usize = 2 * PATCH + 1;
 /// How far pixels may differ, in standard deviations of their difference.
 const STRENGTH: f32 = 0.45;
 const LEAST: f32 = 1e-10;
-/// Weights under this are none.
-const LEAST_WEIGHT: f32 = 1e-3;
+/// Pixels farther apart have no weight: it would be a thousandth.
+const MOST_APART: f32 = 6.9;
 
 /// The mean of two pictures of `width` pixels a row, of different paths and as many, without their noise.
 pub fn denoised(halves: [&[[f32; 4]]; 2], width: usize) -> Vec<[f32; 4]> {
     let [a, b] = halves;
     let height = a.len() / width.max(1);
-    let variance = variance(halves, width, height);
+    if a.is_empty() {
+        return Vec::new();
+    }
+    let variance = Padded::of(&variance(halves, width, height), width, height);
+    let by = halves.map(|half| By {
+        colors: Padded::of(half, width, height),
+        variance: variance.clone(),
+        width,
+        height,
+    });
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let rows = height.div_ceil(threads).max(1);
     let mut picture = vec![[0.0; 4]; a.len()];
     std::thread::scope(|scope| {
-        for (i, band) in picture.chunks_mut((rows * width).max(1)).enumerate() {
-            let (variance, first) = (&variance, i * rows);
+        for (i, band) in picture.chunks_mut(rows * width).enumerate() {
+            let by = &by;
             scope.spawn(move || {
-                let filter = |of: &[[f32; 4]], by: &[[f32; 4]], band: &mut [[f32; 4]]| {
-                    let by = By {
-                        colors: by,
-                        variance,
-                        width: width as i32,
-                        height: height as i32,
-                    };
-                    by.add_filtered(of, first as i32, band);
-                };
-                filter(a, b, band);
-                filter(b, a, band);
+                by[1].add_filtered(a, i * rows, band);
+                by[0].add_filtered(b, i * rows, band);
             });
         }
     });
@@ -70,94 +72,122 @@ fn variance([a, b]: [&[[f32; 4]]; 2], width: usize, height: usize) -> Vec<[f32; 
     (0..width * height).map(mean).collect()
 }
 
-/// What weights are made of.
-struct By<'a> {
-    colors: &'a [[f32; 4]],
-    variance: &'a [[f32; 4]],
-    width: i32,
-    height: i32,
+/// What weights are made of, held beyond the edges of the picture.
+struct By {
+    colors: Padded,
+    variance: Padded,
+    width: usize,
+    height: usize,
 }
 
-impl By<'_> {
+/// Beyond the edges lie as many pixels as a window and a patch reach.
+const PAD: usize = WINDOW + PATCH;
+
+/// A picture with edges around it that repeat its own.
+#[derive(Clone)]
+struct Padded {
+    pixels: Vec<[f32; 4]>,
+    stride: usize,
+}
+
+impl Padded {
+    fn of(picture: &[[f32; 4]], width: usize, height: usize) -> Self {
+        let held = |i: usize, side: usize| i.saturating_sub(PAD).min(side - 1);
+        let rows = 0..height + 2 * PAD;
+        let row = |y: usize| &picture[held(y, height) * width..][..width];
+        let stride = width + 2 * PAD;
+        let pixels = rows.flat_map(|y| (0..stride).map(move |x| row(y)[held(x, width)]));
+        Self {
+            pixels: pixels.collect(),
+            stride,
+        }
+    }
+
+    /// Of a row of the picture with so many pixels before its first, that many and more.
+    fn row(&self, y: usize, before: usize, count: usize) -> &[[f32; 4]] {
+        &self.pixels[y * self.stride + before..][..count]
+    }
+}
+
+impl By {
     /// Adds half of the filtered picture to the rows from `first` on.
-    fn add_filtered(&self, of: &[[f32; 4]], first: i32, band: &mut [[f32; 4]]) {
-        let rows = band.len() as i32 / self.width;
+    fn add_filtered(&self, of: &[[f32; 4]], first: usize, band: &mut [[f32; 4]]) {
+        let width = self.width;
+        let rows = band.len() / width;
+        let own = |i: usize| {
+            self.variance
+                .row(PAD + first + i / width, PAD + i % width, 1)[0]
+        };
         let mut sums = vec![[0.0_f32; 4]; band.len()];
         let mut weights = vec![0.0_f32; band.len()];
-        for dy in -WINDOW..=WINDOW {
-            for dx in -WINDOW..=WINDOW {
-                let distances = self.distances([dx, dy], first - PATCH, rows + 2 * PATCH);
-                for y in 0..rows {
-                    let other_y = first + y + dy;
-                    if !(0..self.height).contains(&other_y) {
+        let mut in_rows = vec![0.0_f32; (rows + 2 * PATCH) * width];
+        let mut in_patches = vec![0.0_f32; width];
+        for shift in 0..SIDE * SIDE {
+            let [across, down] = [shift % SIDE, shift / SIDE];
+            for (y, sums) in in_rows.chunks_mut(width).enumerate() {
+                self.set_distances(first + y, [across, down], sums);
+            }
+            for y in 0..rows {
+                // Shifts count from one window before.
+                let other_y = first + y + down;
+                if other_y < WINDOW || other_y >= self.height + WINDOW {
+                    continue;
+                }
+                let other = &of[(other_y - WINDOW) * width..][..width];
+                in_patches.fill(0.0);
+                for row in in_rows[y * width..].chunks(width).take(TAPS) {
+                    for (sum, distance) in in_patches.iter_mut().zip(row) {
+                        *sum += distance;
+                    }
+                }
+                let seen = WINDOW.saturating_sub(across)..width.min(width + WINDOW - across);
+                for x in seen {
+                    let apart = in_patches[x].max(0.0) * (1.0 / (TAPS * TAPS) as f32);
+                    if apart > MOST_APART {
                         continue;
                     }
-                    for x in (-dx).max(0)..self.width.min(self.width - dx) {
-                        let weight = (-self.in_patch(&distances, x, y).max(0.0)).exp();
-                        if weight < LEAST_WEIGHT {
-                            continue;
-                        }
-                        let own = (y * self.width + x) as usize;
-                        let other = of[(other_y * self.width + x + dx) as usize];
-                        let sum = &mut sums[own];
-                        *sum = [0, 1, 2, 3].map(|c| sum[c] + weight * other[c]);
-                        weights[own] += weight;
-                    }
+                    let weight = (-apart).exp();
+                    let (own, other) = (y * width + x, other[x + across - WINDOW]);
+                    let sum = &mut sums[own];
+                    *sum = [0, 1, 2, 3].map(|c| sum[c] + weight * other[c]);
+                    weights[own] += weight;
                 }
             }
         }
         for (i, pixel) in band.iter_mut().enumerate() {
-            let at = (first * self.width) as usize + i;
             // Without noise there is nothing to take out, and a mean would round.
-            let is_exact = self.variance[at] == [0.0; 4];
+            let is_exact = own(i) == [0.0; 4];
             for c in 0..4 {
-                let filtered = if is_exact {
-                    of[at][c]
-                } else {
-                    sums[i][c] / weights[i]
+                let filtered = match is_exact {
+                    true => of[first * width + i][c],
+                    false => sums[i][c] / weights[i],
                 };
                 pixel[c] += 0.5 * filtered;
             }
         }
     }
 
-    /// Of pixels to those so far away, in rows from `first` on, each the sum over a row of a patch; beyond the edges of the
-    /// picture the edge counts.
-    fn distances(&self, shift: [i32; 2], first: i32, rows: i32) -> Vec<f32> {
-        let mut all = Vec::with_capacity((rows * self.width) as usize);
-        let mut row = vec![0.0_f32; self.width as usize];
-        for y in first..first + rows {
-            for (x, distance) in (0..).zip(&mut row) {
-                *distance = self.distance([x, y], shift);
-            }
-            for x in 0..self.width {
-                let taps = (-PATCH..=PATCH).map(|k| row[(x + k).clamp(0, self.width - 1) as usize]);
-                all.push(taps.sum());
+    /// Of each pixel of row `y`, from [`PATCH`] rows before the picture on, to the one a shift away, the sum over a row of
+    /// its patch.
+    fn set_distances(&self, y: usize, [across, down]: [usize; 2], sums: &mut [f32]) {
+        let count = self.width + 2 * PATCH;
+        let colors = self.colors.row(y + WINDOW, WINDOW, count);
+        let variance = self.variance.row(y + WINDOW, WINDOW, count);
+        let other_colors = self.colors.row(y + down, across, count);
+        let other_variance = self.variance.row(y + down, across, count);
+        let mut last = [0.0_f32; TAPS];
+        for i in 0..count {
+            let (p, q) = (colors[i], other_colors[i]);
+            let (v, w) = (variance[i], other_variance[i]);
+            let of = [0, 1, 2, 3].map(|c| {
+                let apart = (p[c] - q[c]) * (p[c] - q[c]) - (v[c] + v[c].min(w[c]));
+                apart / (LEAST + STRENGTH * STRENGTH * (v[c] + w[c]))
+            });
+            last[i % TAPS] = 0.25 * ((of[0] + of[1]) + (of[2] + of[3]));
+            if i >= 2 * PATCH {
+                sums[i - 2 * PATCH] = last.iter().sum();
             }
         }
-        all
-    }
-
-    fn distance(&self, [x, y]: [i32; 2], [dx, dy]: [i32; 2]) -> f32 {
-        let place = |x: i32, y: i32| {
-            let [x, y] = [x.clamp(0, self.width - 1), y.clamp(0, self.height - 1)];
-            (y * self.width + x) as usize
-        };
-        let (p, q) = (place(x, y), place(x + dx, y + dy));
-        let (colors, variance) = (self.colors, self.variance);
-        let of = |c: usize| {
-            let [own, other] = [variance[p][c], variance[q][c]];
-            let apart = (colors[p][c] - colors[q][c]).powi(2) - (own + own.min(other));
-            apart / (LEAST + STRENGTH * STRENGTH * (own + other))
-        };
-        0.25 * (of(0) + of(1) + of(2) + of(3))
-    }
-
-    /// The mean over the patch around a pixel of the band.
-    fn in_patch(&self, distances: &[f32], x: i32, y: i32) -> f32 {
-        let side = 2 * PATCH + 1;
-        let taps = (0..side).map(|k| distances[((y + k) * self.width + x) as usize]);
-        taps.sum::<f32>() / (side * side) as f32
     }
 }
 

@@ -15,6 +15,7 @@ mod random;
 #[doc(hidden)]
 pub mod reference;
 mod rules;
+mod surface;
 
 pub(crate) use denoise::denoised;
 pub use phase::Phase;
@@ -54,11 +55,32 @@ pub struct PathTracing {
     pub light_size_degrees: f64,
     /// Radiance from all around, linear red, green and blue.
     pub sky: [f64; 3],
+    /// The picture ends where its noise ([`Traced::noise`](crate::offscreen::Traced)) is no more than this, looked at where the
+    /// number of paths has doubled. The CPU reference traces all.
+    pub noise: Option<f64>,
+    /// The picture ends after so many seconds, with the paths that have been traced. The CPU reference traces all.
+    pub seconds: Option<f64>,
     /// Take the noise out of the picture by what two halves of the paths say of it; 4 paths at least.
     pub denoise: bool,
     /// How much of matter is surface: a collision is one with a surface by the chance 1 - exp(-`surface` |gradient|), the
     /// gradient in ranges of values a smallest spacing. 0: there are none.
     pub surface: f64,
+    /// Reflectance of surfaces at right angles, 0 to 1. 0: they reflect as Lambert says; over 0: they have a coat that
+    /// shines.
+    pub f0: f64,
+    /// How rough the coat is, 0.05 to 1: the root of the width of its reflections.
+    pub roughness: f64,
+    /// Of a perspective camera; `None`: all is sharp.
+    pub lens: Option<Lens>,
+}
+
+/// A thin lens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lens {
+    /// Half of its width, world length. A point `z` ahead is a circle on the plane of focus, 2 `radius` |z - D| / z wide.
+    pub radius: f64,
+    /// How far ahead of the eye is sharp, world length; `None`: where the camera's target is.
+    pub focus: Option<f64>,
 }
 
 impl Default for PathTracing {
@@ -74,8 +96,13 @@ impl Default for PathTracing {
             lights: Vec::new(),
             light_size_degrees: 0.0,
             sky: [0.0; 3],
+            noise: None,
+            seconds: None,
             denoise: false,
             surface: 0.0,
+            f0: 0.0,
+            roughness: 0.4,
+            lens: None,
         }
     }
 }
@@ -102,18 +129,22 @@ pub(super) static DESC: TechniqueDesc = TechniqueDesc {
 fn gather(desc: &GatherDesc) -> Result<Box<dyn Gather>, gpu::Error> {
     let variant = desc.variant;
     let transfer = match variant.transfer {
-        "points" => "points",
+        kept @ ("points" | "stored") => kept,
         _ => "table",
     };
     let name = format!("pathtrace.{}.{}.{transfer}", variant.filter, variant.holes);
     Ok(rays_of(desc.gpu, RayPass::picture_of(desc.gpu, &name)?))
 }
 
-/// Turns of loops after which paths end by chance: a quarter of what drivers that count them allow, so that all ends long
-/// before ([`crate::gpu::Caps::max_loop_turns`]).
-const MOST_TURNS: u32 = 1 << 14;
-/// Of one event: a mask's layers and rows, and a cube root.
+/// How many paths a pixel has in one pass where a driver ends loops after so many turns.
+pub(crate) const PATHS_OF_LOOP: u32 = 4;
+/// Turns of loops after which the paths of one pass end by chance: half of what drivers that count them allow, so that all
+/// end long before ([`crate::gpu::Caps::max_loop_turns`]).
+const MOST_TURNS: u32 = 1 << 15;
+/// Of one event: a mask's layers and rows.
 const TURNS_OF_MASK: u32 = 10;
+/// Of one collision: the taps of a gradient, and a cube root.
+const TURNS_OF_TAPS: u32 = 7;
 const TURNS_OF_ROOT: u32 = 5;
 
 /// What paths want to know of the volume that they go through.
@@ -137,21 +168,6 @@ pub(crate) struct Medium<'a> {
 const MAJORANT_SLACK: f64 = 1.0 + 1e-5;
 
 impl PathTracing {
-    /// The same paths in two halves, the first of which may have one more.
-    pub(crate) fn halves(&self) -> [Self; 2] {
-        let first = self.samples.div_ceil(2);
-        let half = |first_sample, samples| Self {
-            first_sample,
-            samples,
-            denoise: false,
-            ..self.clone()
-        };
-        [
-            half(self.first_sample, first),
-            half(self.first_sample + first, self.samples - first),
-        ]
-    }
-
     /// Tells the parameters what they do not know without the volume.
     pub(crate) fn tell(&self, medium: &Medium, frame: &mut Frame) {
         let Medium {
@@ -170,17 +186,21 @@ impl PathTracing {
         frame.path_majorants = majorants.rows;
         // The last row has one entry: of all bins.
         frame.path_majorant = majorants.rows[(MAJORANT_BINS * (MAJORANT_ROWS - 1) / 4) as usize][0];
-        // Clip planes are gone over at each change of direction; a search halves the points of colour and of opacity.
+        // A search halves the points of colour and of opacity. Clip planes are gone over at each change of direction; two
+        // events at least are between two of these, and between two collisions.
         let points = (function.color.len() + function.opacity.len() + 1).ilog2() + 2;
-        let more = [
-            (has_holes, TURNS_OF_MASK),
-            (is_searched, 2 * points),
+        let sum = |parts: &[(bool, u32)]| -> u32 {
+            let there = parts.iter().filter(|(is_there, _)| *is_there);
+            there.map(|(_, turns)| turns).sum()
+        };
+        let event = sum(&[(has_holes, TURNS_OF_MASK), (is_searched, 2 * points)]);
+        let collision = sum(&[
+            (self.surface > 0.0, TURNS_OF_TAPS),
+            (has_holes && self.surface > 0.0, 6 * TURNS_OF_MASK),
             (self.phase == Phase::Rayleigh, TURNS_OF_ROOT),
-        ];
-        let more = more
-            .into_iter()
-            .filter_map(|(is_there, turns)| is_there.then_some(turns));
-        frame.path_turns = MOST_TURNS / (1 + frame.clip_plane_count + more.sum::<u32>());
+        ]);
+        let all = 1 + event + (2 * frame.clip_plane_count + collision).div_ceil(2);
+        frame.path_turns = MOST_TURNS / PATHS_OF_LOOP / all;
         let range = high - low;
         frame.path_surface = match range > 0.0 {
             true => (self.surface * smallest_spacing / range) as f32,
@@ -201,13 +221,23 @@ impl View<'_> {
         fields.path_phase = path.phase.numbers();
         fields.path_density = path.density as f32;
         fields.path_albedo = path.albedo as f32;
+        fields.path_f0 = path.f0 as f32;
+        fields.path_alpha = (path.roughness * path.roughness) as f32;
+        self.settings.check_lens(self.camera)?;
+        let camera = self.camera.frame();
+        if let Some(lens) = path.lens {
+            let ahead = (self.camera.target - self.camera.eye).length();
+            fields.path_focus = lens.focus.unwrap_or(ahead) as f32;
+            let side = |way: DVec3| (lens.radius * way).as_vec3().to_array();
+            fields.path_lens_right = side(camera.right);
+            fields.path_lens_up = side(camera.up);
+        }
         let half = (0.5 * path.light_size_degrees).to_radians();
         fields.path_light_size = (1.0 - half.cos()) as f32;
         let (wanted, limit) = (path.lights.len(), MAX_LIGHTS as usize);
         if wanted > limit {
             return Err(Error::TooManyLights { wanted, limit });
         }
-        let camera = self.camera.frame();
         fields.light_count = wanted as u32;
         for (i, light) in path.lights.iter().enumerate() {
             let way: DVec3 = light.way(&camera)?;

@@ -1,10 +1,11 @@
 //! Path tracing on the CPU: CPU reference of `shaders/pathtrace.wgsl`.
 
-use super::elementary::{around, minus_ln};
+use super::elementary::{around, minus_ln, turned};
 use super::phase::{phase_cosine, phase_value};
 use super::random::random_numbers;
+use super::surface::{reflected, reflection};
 use crate::ray::{Ray, domain_interval, pixel_ray, voxel_ray};
-use crate::real::{Real, dot, scale};
+use crate::real::{Real, add, dot, scale};
 use crate::shaders::Frame;
 use crate::technique::reference::{Gathered, Samples, moved};
 
@@ -76,9 +77,10 @@ impl<R: Real> Path<R> {
     fn traced(of: &impl Samples<R>, corner: [u32; 2], mut key: [u32; 4]) -> Self {
         let frame = of.frame();
         let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));
-        let [x, y, ..] = random_numbers::<R>(key);
+        let [x, y, u, v] = random_numbers::<R>(key);
         let [across, down] = corner.map(|n| R::from_f64(n.into()));
-        let mut walk = Walk::along(frame, pixel_ray(frame, [across + x, down + y]));
+        let ray = pixel_ray(frame, [across + x, down + y]);
+        let mut walk = Walk::along(frame, through_lens(frame, ray, [u, v]));
         let mut path = Self {
             weight: [one; 3],
             radiance: [zero; 3],
@@ -95,13 +97,19 @@ impl<R: Real> Path<R> {
                 return path;
             }
             let albedo = R::from_f32(frame.path_albedo);
-            path.weight = std::array::from_fn(|c| path.weight[c] * (color[c] * albedo));
+            let albedo = color.map(|c| c * albedo);
             key[2] |= OF_COLLISION;
             let numbers = random_numbers::<R>(key);
-            let incoming = walk.world.direction;
             let from = walk.world.at(walk.t);
-            let normal = normal_at(of, place, incoming, numbers[0]);
-            let (way, light) = light_at(frame, incoming, normal, numbers);
+            let at = Collision {
+                incoming: walk.world.direction,
+                normal: normal_at(of, place, walk.world.direction, numbers[0]),
+                albedo,
+            };
+            if !at.is_coated(frame) {
+                path.weight = std::array::from_fn(|c| path.weight[c] * albedo[c]);
+            }
+            let (way, light) = at.light(frame, numbers);
             if (0..3).any(|c| path.weight[c] * light[c] > zero) {
                 let way = Ray {
                     origin: from,
@@ -114,6 +122,8 @@ impl<R: Real> Path<R> {
             key[2] = path.draw | OF_DIRECTION;
             let numbers = random_numbers::<R>(key);
             path.bounces += 1;
+            let (direction, weight) = at.scattered(frame, numbers);
+            path.weight = std::array::from_fn(|c| path.weight[c] * weight[c]);
             let kept = path.kept(frame, numbers[0]);
             path.weight = scale(path.weight, kept);
             if path.weight.iter().all(|&w| w <= zero) {
@@ -121,7 +131,7 @@ impl<R: Real> Path<R> {
             }
             let next = Ray {
                 origin: from,
-                direction: scattered(frame, incoming, normal, numbers),
+                direction,
             };
             walk = Walk::along(frame, next);
         }
@@ -248,43 +258,80 @@ fn normal_at<R: Real>(
     })
 }
 
-/// The way to one of the lights, and what it gives if nothing is in the way.
-fn light_at<R: Real>(
-    frame: &Frame,
+/// Where a path has met matter.
+struct Collision<R> {
+    /// Of travel.
     incoming: [R; 3],
+    /// `None`: in the medium.
     normal: Option<[R; 3]>,
-    numbers: [R; 4],
-) -> ([R; 3], [R; 3]) {
-    let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));
-    if frame.light_count == 0 {
-        return ([zero; 3], [zero; 3]);
-    }
-    let count = R::from_f64(frame.light_count.into());
-    let i = ((numbers[1] * count).to_i32() as u32).min(frame.light_count - 1) as usize;
-    let vector = |[x, y, z, _]: [f32; 4]| [x, y, z].map(R::from_f32);
-    let cosine = one - numbers[2] * R::from_f32(frame.path_light_size);
-    let way = around(vector(frame.light_directions[i]), cosine, numbers[3]);
-    let part = match normal {
-        Some(normal) => dot(normal, way).max(zero),
-        None => R::from_f64(std::f64::consts::PI) * phase_value(frame, dot(incoming, way)),
-    };
-    (way, scale(vector(frame.light_colors[i]), count * part))
+    albedo: [R; 3],
 }
 
-/// Where the path goes on.
-fn scattered<R: Real>(
-    frame: &Frame,
-    incoming: [R; 3],
-    normal: Option<[R; 3]>,
-    numbers: [R; 4],
-) -> [R; 3] {
-    let one = R::from_f64(1.0);
-    match normal {
-        Some(normal) => around(normal, (one - numbers[2]).sqrt(), numbers[3]),
-        None => around(
-            incoming,
-            phase_cosine(frame, numbers[1], numbers[2]),
-            numbers[3],
-        ),
+impl<R: Real> Collision<R> {
+    /// Whether its albedo is only a part of what is reflected there.
+    fn is_coated(&self, frame: &Frame) -> bool {
+        frame.path_f0 > 0.0 && self.normal.is_some()
+    }
+
+    /// The way to one of the lights, and what it gives if nothing is in the way.
+    fn light(&self, frame: &Frame, numbers: [R; 4]) -> ([R; 3], [R; 3]) {
+        let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));
+        if frame.light_count == 0 {
+            return ([zero; 3], [zero; 3]);
+        }
+        let count = R::from_f64(frame.light_count.into());
+        let i = ((numbers[1] * count).to_i32() as u32).min(frame.light_count - 1) as usize;
+        let vector = |[x, y, z, _]: [f32; 4]| [x, y, z].map(R::from_f32);
+        let cosine = one - numbers[2] * R::from_f32(frame.path_light_size);
+        let way = around(vector(frame.light_directions[i]), cosine, numbers[3]);
+        let part = match self.normal {
+            Some(normal) => reflected(
+                frame,
+                [normal, scale(self.incoming, -one), way],
+                self.albedo,
+            ),
+            None => {
+                let phase = phase_value(frame, dot(self.incoming, way));
+                [R::from_f64(std::f64::consts::PI) * phase; 3]
+            }
+        };
+        let color = vector(frame.light_colors[i]);
+        (way, std::array::from_fn(|c| count * part[c] * color[c]))
+    }
+
+    /// Where the path goes on, and what its weight is multiplied by.
+    fn scattered(&self, frame: &Frame, numbers: [R; 4]) -> ([R; 3], [R; 3]) {
+        let one = R::from_f64(1.0);
+        match self.normal {
+            Some(normal) => {
+                let to_eye = scale(self.incoming, -one);
+                reflection(frame, [normal, to_eye], self.albedo, numbers)
+            }
+            None => {
+                let cosine = phase_cosine(frame, numbers[1], numbers[2]);
+                (around(self.incoming, cosine, numbers[3]), [one; 3])
+            }
+        }
+    }
+}
+
+/// Rays through a thin lens meet where they meet the plane of focus.
+fn through_lens<R: Real>(frame: &Frame, ray: Ray<R>, [u, v]: [R; 2]) -> Ray<R> {
+    if frame.path_focus == 0.0 {
+        return ray;
+    }
+    let vector = |v: [f32; 3]| v.map(R::from_f32);
+    let ahead = dot(vector(frame.forward), ray.direction);
+    let at_focus = scale(ray.direction, R::from_f32(frame.path_focus) / ahead);
+    let [x, y] = turned(v).map(|t| u.sqrt() * t);
+    let beside = add(
+        scale(vector(frame.path_lens_right), x),
+        scale(vector(frame.path_lens_up), y),
+    );
+    let towards = add(at_focus, scale(beside, R::from_f64(-1.0)));
+    let norm = dot(towards, towards).sqrt();
+    Ray {
+        origin: add(ray.origin, beside),
+        direction: scale(towards, R::from_f64(1.0) / norm),
     }
 }

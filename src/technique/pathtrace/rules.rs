@@ -1,6 +1,7 @@
 //! What does not go together with paths.
 
-use super::PathTracing;
+use super::{Lens, PathTracing};
+use crate::camera::{Camera, Projection};
 use crate::picture::ColorSpace;
 use crate::technique::compatibility::refuse;
 use crate::technique::{Error, Filter, Lattice, Mode, Settings};
@@ -57,6 +58,17 @@ impl Settings {
         self.path.check()
     }
 
+    /// Whether a camera has what a lens needs.
+    ///
+    /// # Errors
+    /// [`Error::NotFor`].
+    pub(in crate::technique) fn check_lens(&self, camera: &Camera) -> Result<(), Error> {
+        let has_lens = self.technique.traces_paths() && self.path.lens.is_some();
+        let is_parallel = matches!(camera.projection, Projection::Orthographic { .. });
+        let of = "a perspective camera";
+        refuse(has_lens && is_parallel, "a lens", of, "an orthographic one")
+    }
+
     /// Whether paths go through such a volume: one of numbers, in one texture, under a function of the value alone.
     ///
     /// # Errors
@@ -89,6 +101,11 @@ impl PathTracing {
         let wanted = "4 or more, which tell what is noise";
         let is_right = !self.denoise || self.samples >= 4;
         Error::unless(is_right, "paths a pixel", wanted, count)?;
+        for (name, limit) in [("the noise", self.noise), ("seconds", self.seconds)] {
+            let limit = limit.unwrap_or(1.0);
+            let is_right = limit > 0.0 && limit <= 1e9;
+            Error::unless(is_right, name, "a number over 0, at most 1e9", limit)?;
+        }
         let density = self.density;
         let is_right = density > 0.0 && density.is_finite();
         Error::unless(is_right, "the density scale", "a number over 0", density)?;
@@ -109,6 +126,16 @@ impl PathTracing {
         for c in self.sky {
             let is_right = c >= 0.0 && c.is_finite();
             Error::unless(is_right, "light of the sky", "0 or more", c)?;
+        }
+        Error::unless(is_part(self.f0), "the reflectance", "0 to 1", self.f0)?;
+        let is_right = (0.05..=1.0).contains(&self.roughness);
+        Error::unless(is_right, "the roughness", "0.05 to 1", self.roughness)?;
+        if let Some(Lens { radius, focus }) = self.lens {
+            let is_length = |x: f64| x > 0.0 && x.is_finite();
+            let wanted = "a length over 0";
+            Error::unless(is_length(radius), "the radius of the lens", wanted, radius)?;
+            let focus = focus.unwrap_or(1.0);
+            Error::unless(is_length(focus), "the distance of focus", wanted, focus)?;
         }
         let is_right = self.surface >= 0.0 && self.surface.is_finite();
         let name = "the scattering of surfaces";

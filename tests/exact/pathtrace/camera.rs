@@ -1,0 +1,75 @@
+//! Rays through a lens.
+
+use super::{drawn, matter, mean, scene, settings};
+use crate::shared::volume_of;
+use glam::{DAffine3, DVec3, dvec3};
+use stratavox::camera::{Camera, Projection};
+use stratavox::technique::pathtrace::{Lens, PathTracing};
+
+/// A small opaque plate at distance z, seen through a lens that is sharp at D: on the plane of focus its shadow is spread
+/// over a circle 2 radius |z - D| / z wide, and as much light is covered as through a pinhole.
+#[test]
+fn a_point_out_of_focus_is_a_circle_as_wide_as_a_thin_lens_says() {
+    const SIDE: f64 = 0.04;
+    let (z, focus, radius) = (2.0, 3.0, 0.3);
+    let place = DAffine3::from_translation(dvec3(-0.5 * SIDE, -0.5 * SIDE, -0.5 * SIDE))
+        * DAffine3::from_scale(DVec3::splat(SIDE / 4.0));
+    let volume = volume_of([4; 3], place, |_| 1.0);
+    let function = matter([1.0; 3], &[(0.0, 8.0)]);
+    let camera = Camera {
+        eye: dvec3(0.0, 0.0, z),
+        target: DVec3::ZERO,
+        up: DVec3::Y,
+        projection: Projection::Perspective { fov_degrees: 30.0 },
+        zoom: 1.0,
+    };
+    let extent = 96;
+    let picture = |lens| {
+        let settings = settings(PathTracing {
+            samples: 256,
+            bounces: Some(0),
+            density: 1e4,
+            lens,
+            ..PathTracing::default()
+        });
+        drawn(&scene(&volume, &function, &camera, &settings, [extent; 2]))
+    };
+    let sharp = picture(None);
+    let blurred = picture(Some(Lens {
+        radius,
+        focus: Some(focus),
+    }));
+    // Of pixels on the plane of focus.
+    let pixel = 2.0 * focus * 15.0_f64.to_radians().tan() / f64::from(extent);
+    let middle = 0.5 * f64::from(extent);
+    let mut moments = [0.0; 2];
+    for (i, p) in blurred.pixels.iter().enumerate() {
+        let [x, y] = [i as u32 % extent, i as u32 / extent].map(|n| f64::from(n) + 0.5 - middle);
+        moments[0] += f64::from(p[3]);
+        moments[1] += f64::from(p[3]) * (x * x + y * y) * pixel * pixel;
+    }
+    // A disc of this radius has the mean square r^2 / 2; the plate's own is small beside it.
+    let r = radius * (z - focus).abs() / z;
+    let found = (2.0 * moments[1] / moments[0]).sqrt();
+    println!("{found} of {r}");
+    assert!((found / r - 1.0).abs() < 0.02, "{found} {r}");
+    let [covered, through_pinhole] = [&blurred, &sharp].map(|picture| mean(picture, 3)[0]);
+    assert!(
+        (covered / through_pinhole - 1.0).abs() < 0.05,
+        "{covered} {through_pinhole}"
+    );
+    // What lies on the plane of focus is as sharp as through a pinhole.
+    let at_focus = picture(Some(Lens {
+        radius,
+        focus: None,
+    }));
+    let off = at_focus.pixels.iter().zip(&sharp.pixels);
+    let off = off
+        .map(|(a, b)| f64::from((a[3] - b[3]).abs()))
+        .fold(0.0, f64::max);
+    let far = blurred.pixels.iter().zip(&sharp.pixels);
+    let far = far
+        .map(|(a, b)| f64::from((a[3] - b[3]).abs()))
+        .fold(0.0, f64::max);
+    assert!(off < 0.3 && far > 0.7, "{off} {far}");
+}

@@ -1,0 +1,119 @@
+//! When a picture ends, and what is taken out of it.
+
+use super::{around_blobs, blobs, drawn, lit, matter, scene, settings};
+use crate::shared::device;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use stratavox::offscreen::Renderer;
+use stratavox::picture::Picture;
+use stratavox::technique::pathtrace::PathTracing;
+
+/// Taking it out is worth more than twice the paths.
+#[test]
+fn noise_that_is_taken_out_is_no_detail() {
+    let (volume, camera) = (blobs(), around_blobs());
+    let function = matter([0.9, 0.7, 0.4], &[(0.1, 0.0), (0.4, 1.5), (1.0, 0.2)]);
+    let mut renderer = Renderer::new(device(), &volume).expect("a renderer");
+    let mut of = |samples, seed, denoise| {
+        let settings = settings(PathTracing {
+            samples,
+            seed,
+            denoise,
+            ..lit()
+        });
+        let scene = scene(&volume, &function, &camera, &settings, [60, 50]);
+        renderer.render(&scene, &[]).expect("a picture").picture
+    };
+    let truth = of(256, 7, false);
+    let error = |picture: &Picture| {
+        let pairs = picture.pixels.iter().zip(&truth.pixels);
+        let off = pairs.flat_map(|(a, b)| [0, 1, 2, 3].map(|c| f64::from(a[c] - b[c]).powi(2)));
+        (off.sum::<f64>() / (4 * truth.pixels.len()) as f64).sqrt()
+    };
+    let [before, after] = [false, true].map(|denoise| error(&of(16, 0, denoise)));
+    println!("{before} {after}");
+    assert!(after < before / 2.0_f64.sqrt(), "{before} {after}");
+}
+
+/// The picture of `--noise` is that of as many paths, and its noise is the error against many more.
+#[test]
+fn a_picture_ends_where_its_noise_is_low() {
+    let (volume, camera) = (blobs(), around_blobs());
+    let function = matter([0.9, 0.7, 0.4], &[(0.1, 0.0), (0.4, 1.5), (1.0, 0.2)]);
+    let mut renderer = Renderer::new(device(), &volume).expect("a renderer");
+    let mut of = |path: PathTracing| {
+        let settings = settings(path);
+        let scene = scene(&volume, &function, &camera, &settings, [60, 50]);
+        let picture = renderer.render(&scene, &[]).expect("a picture").picture;
+        (picture, renderer.traced())
+    };
+    let paths = |samples, seed| PathTracing {
+        samples,
+        seed,
+        ..lit()
+    };
+    let (ended, traced) = of(PathTracing {
+        noise: Some(0.05),
+        ..paths(4096, 0)
+    });
+    let noise = traced.noise.expect("several blocks");
+    assert!(
+        traced.paths.is_power_of_two() && traced.paths >= 16,
+        "{traced:?}"
+    );
+    assert!(noise <= 0.05 && traced.paths < 4096, "{traced:?}");
+    let (same, _) = of(paths(traced.paths, 0));
+    assert!(ended == same);
+    let (_, before) = of(paths(traced.paths / 2, 0));
+    assert!(
+        traced.paths == 16 || before.noise.is_some_and(|noise| noise > 0.05),
+        "{before:?}"
+    );
+    let (truth, _) = of(paths(16 * traced.paths, 9));
+    let y = |p: &[f32; 4]| {
+        0.2126 * f64::from(p[0]) + 0.7152 * f64::from(p[1]) + 0.0722 * f64::from(p[2])
+    };
+    let pairs = || ended.pixels.iter().zip(&truth.pixels);
+    let off: f64 = pairs().map(|(a, b)| (y(a) - y(b)).powi(2)).sum();
+    let light: f64 = pairs().map(|(_, b)| y(b).powi(2)).sum();
+    let error = (off / light).sqrt();
+    println!("{traced:?}, error {error}");
+    assert!((error / noise - 1.0).abs() < 0.15, "{error} {noise}");
+}
+
+/// One block is traced whatever else is said, and the picture is the mean of what there is.
+#[test]
+fn a_picture_ends_when_it_is_asked_to_and_after_its_seconds() {
+    let (volume, camera) = (blobs(), around_blobs());
+    let function = matter([0.9, 0.7, 0.4], &[(0.1, 0.0), (0.4, 1.5), (1.0, 0.2)]);
+    let drawn_by = |path: PathTracing, asked: bool| {
+        let mut renderer = Renderer::new(device(), &volume).expect("a renderer");
+        renderer.end_paths_when(Arc::new(AtomicBool::new(asked)));
+        let settings = settings(path);
+        let scene = scene(&volume, &function, &camera, &settings, [60, 50]);
+        let picture = renderer.render(&scene, &[]).expect("a picture").picture;
+        (picture, renderer.traced().paths)
+    };
+    let many = PathTracing {
+        samples: 64,
+        denoise: true,
+        ..lit()
+    };
+    let short = PathTracing {
+        seconds: Some(1e-6),
+        ..many.clone()
+    };
+    for (picture, paths) in [drawn_by(many.clone(), true), drawn_by(short, false)] {
+        assert!(paths > 0 && paths < 64, "{paths}");
+        let settings = settings(PathTracing {
+            samples: paths,
+            denoise: false,
+            ..many.clone()
+        });
+        let wanted = drawn(&scene(&volume, &function, &camera, &settings, [60, 50]));
+        for (a, b) in picture.pixels.iter().zip(&wanted.pixels) {
+            assert!((0..4).all(|c| (a[c] - b[c]).abs() < 1e-6), "{a:?} {b:?}");
+        }
+    }
+    assert_eq!(drawn_by(many, false).1, 64);
+}
