@@ -200,6 +200,7 @@ impl Caster {
             beside: &[],
             light: None,
             points: None,
+            sky: None,
             skip: Skip::Nothing,
         };
         let bound = inputs.bind(&gpu, pipeline.layout(), &[])?;

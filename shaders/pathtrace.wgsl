@@ -21,6 +21,7 @@
 #import elementary
 #import phase
 #import surface
+#import sky
 
 // Mean radiance of paths, and which part of them has met matter.
 @group(0) @binding(6) var picture: texture_storage_2d<rgba32float, read_write>;
@@ -34,6 +35,8 @@ const SCATTER: u32 = 3u;
 // Draws of a collision, and of the direction behind it.
 const OF_COLLISION: u32 = 0x40000000u;
 const OF_DIRECTION: u32 = 0x80000000u;
+// And of a direction to a sky.
+const OF_SKY: u32 = 0xc0000000u;
 
 // Behind so many bounces, weights under LEAST end by chance.
 const FEWEST_BOUNCES: u32 = 4u;
@@ -55,6 +58,8 @@ struct Path {
     // Turns so far: the number of the next draw.
     draw: u32,
     has_met: bool,
+    // Of its direction, per steradian.
+    density: f32,
 }
 
 // Where a path has met matter, while its light is looked for.
@@ -94,7 +99,7 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
             sample++;
             let numbers = random_numbers(key);
             walk = walk_along(through_lens(pixel_ray(vec2<f32>(pixel) + numbers.xy), numbers.zw));
-            path = Path(vec3(1.0), vec3(0.0), 0u, 1u, false);
+            path = Path(vec3(1.0), vec3(0.0), 0u, 1u, false, 0.0);
             state = PATH;
         }
         key.z = path.draw;
@@ -120,7 +125,8 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
                 state = SCATTER;
             }
         } else if has_left {
-            path.radiance += select(vec3(0.0), path.weight * frame.path_sky, path.has_met);
+            path.radiance += path.weight * sky_of(path, walk.world.direction);
+            path.has_met = path.has_met || frame.path_sky_shown != 0u;
             state = NEXT;
         } else if u.y < chance {
             path.has_met = true;
@@ -140,7 +146,8 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
                 if !is_coated(at) {
                     path.weight *= at.albedo;
                 }
-                let to_light = light_at(&at, numbers);
+                key.z = path.draw | OF_SKY;
+                let to_light = light_at(&at, numbers, key);
                 state = SCATTER;
                 if any(path.weight * at.light > vec3(0.0)) {
                     walk = walk_along(Ray(at.place, to_light));
@@ -154,6 +161,7 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
             path.bounces++;
             let next = scattered(at, numbers);
             path.weight *= next.weight;
+            path.density = next.density;
             path.weight *= kept(path, numbers.x);
             walk = walk_along(Ray(at.place, next.direction));
             state = select(NEXT, PATH, any(path.weight > vec3(0.0)));
@@ -227,20 +235,56 @@ fn normal_at(place: vec3<f32>, direction: vec3<f32>, u: f32) -> vec3<f32> {
 
 // One of the lights: the way to it, and in `light` what it gives if nothing is in the way. A light of colour 1 gives a white
 // surface across its way radiance 1: irradiance pi.
-fn light_at(at: ptr<function, Collision>, numbers: vec4<f32>) -> vec3<f32> {
-    if frame.light_count == 0u {
+fn light_at(at: ptr<function, Collision>, numbers: vec4<f32>, key: vec4<u32>) -> vec3<f32> {
+    (*at).light = vec3(0.0);
+    let count = light_kinds();
+    if count == 0u {
         return vec3(0.0);
     }
-    let count = f32(frame.light_count);
-    let i = min(u32(numbers.y * count), frame.light_count - 1u);
-    let axis = frame.light_directions[i].xyz;
-    let way = around(axis, 1.0 - numbers.z * frame.path_light_size, numbers.w);
+    let i = min(u32(numbers.y * f32(count)), count - 1u);
+    var way: vec3<f32>;
+    var irradiance: vec3<f32>;
+    if i == frame.light_count {
+        way = sky_drawn(random_numbers(key));
+        let of_sky = sky_at(way);
+        let both = of_sky.density + f32(count) * scattering_density(*at, way);
+        irradiance = select(vec3(0.0), of_sky.radiance / (3.1415927 * both), of_sky.density > 0.0);
+    } else {
+        way = around(frame.light_directions[i].xyz, 1.0 - numbers.z * frame.path_light_size, numbers.w);
+        irradiance = frame.light_colors[i].xyz;
+    }
     var part = vec3(3.1415927 * phase_value(dot((*at).direction, way)));
     if any((*at).normal != vec3(0.0)) {
         part = reflected((*at).normal, -(*at).direction, way, (*at).albedo);
     }
-    (*at).light = count * part * frame.light_colors[i].xyz;
+    (*at).light = f32(count) * part * irradiance;
     return way;
+}
+
+// Lights, and a sky that directions are drawn to.
+fn light_kinds() -> u32 {
+    return frame.light_count + select(0u, 1u, has_sky_picture());
+}
+
+// What comes from where a path leaves. Directions to the sky are drawn at collisions too: the balance heuristic (Veach 1997),
+// p / (p + p'), of the densities of both ways to the same direction.
+fn sky_of(path: Path, way: vec3<f32>) -> vec3<f32> {
+    if !path.has_met && frame.path_sky_shown == 0u {
+        return vec3(0.0);
+    }
+    let of_sky = sky_at(way);
+    if !path.has_met || !has_sky_picture() {
+        return of_sky.radiance;
+    }
+    return of_sky.radiance * path.density / (path.density + of_sky.density / f32(light_kinds()));
+}
+
+// How often a path goes on in a direction, per steradian.
+fn scattering_density(at: Collision, way: vec3<f32>) -> f32 {
+    if any(at.normal != vec3(0.0)) {
+        return reflection_density(at.normal, -at.direction, way);
+    }
+    return phase_value(dot(at.direction, way));
 }
 
 // Where the path goes on: by the phase function, or as a surface reflects.
@@ -248,7 +292,8 @@ fn scattered(at: Collision, numbers: vec4<f32>) -> Reflection {
     if any(at.normal != vec3(0.0)) {
         return reflection(at.normal, -at.direction, at.albedo, numbers);
     }
-    return Reflection(around(at.direction, phase_cosine(numbers.y, numbers.z), numbers.w), vec3(1.0));
+    let cosine = phase_cosine(numbers.y, numbers.z);
+    return Reflection(around(at.direction, cosine, numbers.w), vec3(1.0), phase_value(cosine));
 }
 
 // Whether its albedo is only a part of what is reflected there.

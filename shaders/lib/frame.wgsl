@@ -230,8 +230,12 @@ struct Frame {
     path_count: u32,
     path_seed: u32,
     path_bounces: u32,
-    // From all around, as light of lights is given.
+    // Radiance from all around, or what that of a picture of so many texels is multiplied by, turned by a part of a turn;
+    // and whether the eye sees it.
     path_sky: vec3<f32>,
+    path_sky_turn: f32,
+    path_sky_size: vec2<u32>,
+    path_sky_shown: u32,
     // Per world length, times density: no extinction is larger.
     path_majorant: f32,
     // The phase function: see phase.wgsl.

@@ -60,25 +60,42 @@ struct Reflection {
     direction: vec3<f32>,
     // f m' over the density of directions; of Lambert without its albedo.
     weight: vec3<f32>,
+    // Per steradian.
+    density: f32,
+}
+
+// How often a direction is drawn, per steradian.
+fn reflection_density(normal: vec3<f32>, to_eye: vec3<f32>, way: vec3<f32>) -> f32 {
+    let lambert = max(dot(normal, way), 0.0) / 3.1415927;
+    if frame.path_f0 == 0.0 {
+        return lambert;
+    }
+    let eye = dot(normal, to_eye);
+    let by_coat = chance_of_coat(eye);
+    let between = direction_of(to_eye + way);
+    let coat = 0.5 * half_vectors(dot(normal, between)) / (eye + masking(eye));
+    return by_coat * coat + (1.0 - by_coat) * lambert;
+}
+
+fn chance_of_coat(cosine: f32) -> f32 {
+    return LEAST_OF_COAT + (1.0 - LEAST_OF_COAT) * fresnel(cosine);
 }
 
 // A direction, and what a path that goes on there is multiplied by.
 fn reflection(normal: vec3<f32>, to_eye: vec3<f32>, albedo: vec3<f32>, numbers: vec4<f32>) -> Reflection {
     let lambert = around(normal, sqrt(1.0 - numbers.z), numbers.w);
     if frame.path_f0 == 0.0 {
-        return Reflection(lambert, vec3(1.0));
+        return Reflection(lambert, vec3(1.0), dot(normal, lambert) / 3.1415927);
     }
     let eye = dot(normal, to_eye);
-    let by_coat = LEAST_OF_COAT + (1.0 - LEAST_OF_COAT) * fresnel(eye);
+    let by_coat = chance_of_coat(eye);
     let way = select(lambert, mirrored(normal, to_eye, numbers.zw), numbers.y < by_coat);
     let light = dot(normal, way);
     if light <= 0.0 || eye <= 0.0 {
-        return Reflection(way, vec3(0.0));
+        return Reflection(way, vec3(0.0), 0.0);
     }
-    let between = direction_of(to_eye + way);
-    let of_coat = 0.5 * half_vectors(dot(normal, between)) / (eye + masking(eye));
-    let density = by_coat * of_coat + (1.0 - by_coat) * light / 3.1415927;
-    return Reflection(way, reflected(normal, to_eye, way, albedo) / (3.1415927 * density));
+    let density = reflection_density(normal, to_eye, way);
+    return Reflection(way, reflected(normal, to_eye, way, albedo) / (3.1415927 * density), density);
 }
 
 // By a half vector of those that the eye sees: of a sphere that is flattened to the ellipsoid of the normals.

@@ -34,6 +34,7 @@ pub fn read(path: &Path) -> Result<SceneFlags, Error> {
     scene.labels = scene.labels.with_paths(|file| folder_of(path).join(file));
     scene.opacity = scene.opacity.with_paths(|file| folder_of(path).join(file));
     scene.with = scene.with.with_paths(|file| folder_of(path).join(file));
+    scene.path = scene.path.with_paths(|file| folder_of(path).join(file));
     Ok(scene)
 }
 
@@ -50,6 +51,9 @@ pub fn text(scene: &SceneFlags, path: &Path) -> String {
             .with_paths(|file| relative(file, folder_of(path))),
         with: scene
             .with
+            .with_paths(|file| relative(file, folder_of(path))),
+        path: scene
+            .path
             .with_paths(|file| relative(file, folder_of(path))),
         ..scene.clone()
     };
@@ -142,6 +146,7 @@ pub fn inputs(scene: &SceneFlags, scene_file: Option<&Path>) -> Vec<PathBuf> {
         labels,
         label_tf,
         scene.opacity.file(),
+        scene.path.file(),
         scene_file,
     ];
     let files = files.into_iter().flatten();

@@ -217,6 +217,7 @@ fn inputs<'a>(given: &Given<'a>, copy: &'a GpuVolume, brick: usize) -> Inputs<'a
         beside: &[],
         light: None,
         points: None,
+        sky: None,
         skip: given.function.skip(given.volume),
     }
 }

@@ -65,6 +65,7 @@ pub fn made_light(
             beside: &[],
             light: None,
             points: None,
+            sky: None,
             skip: Skip::Nothing,
         };
         Ok((light.bind(&inputs)?, recording.write(&ring, slot)?))

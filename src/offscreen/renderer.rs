@@ -14,6 +14,7 @@ mod filtered;
 mod gather;
 mod kept;
 mod pacing;
+mod path_sky;
 mod paths;
 mod readback;
 mod skipping;
@@ -51,6 +52,7 @@ pub use filtered::Filtered;
 use gather::points_at_once;
 pub use kept::Kept;
 use pacing::{Known, passes_of};
+use path_sky::PathSky;
 use paths::Ends;
 pub use paths::Traced;
 use skipping::Skipped;
@@ -98,6 +100,7 @@ pub struct Renderer<'v> {
     /// Geometry in the pictures.
     behind: Option<Behind>,
     path_ends: Ends,
+    path_sky: PathSky,
     device: Headless,
 }
 

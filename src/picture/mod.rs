@@ -6,6 +6,8 @@ mod background;
 pub mod compare;
 #[cfg(feature = "exr")]
 mod exr;
+#[cfg(feature = "png")]
+mod hdr;
 #[cfg(feature = "files")]
 mod npy;
 #[cfg(feature = "files")]

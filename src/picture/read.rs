@@ -125,7 +125,7 @@ impl PictureProblem {
     }
 }
 
-/// The picture in the PNG, EXR or npy file at `path`, told apart by their first bytes.
+/// The picture in the PNG, Radiance HDR, EXR or npy file at `path`, told apart by their first bytes.
 pub fn read_image(path: &Path) -> Result<Image, PictureError> {
     let of_file = |problem| PictureError {
         path: path.to_owned(),
@@ -142,6 +142,8 @@ fn decode(bytes: &[u8]) -> Result<Image, PictureProblem> {
     match bytes {
         #[cfg(feature = "png")]
         [0x89, b'P', b'N', b'G', ..] => super::png::decode(bytes),
+        #[cfg(feature = "png")]
+        _ if bytes.starts_with(super::hdr::MAGIC) => super::hdr::decode(bytes),
         #[cfg(feature = "exr")]
         [0x76, 0x2f, 0x31, 0x01, ..] => super::exr::decode(bytes),
         [0x93, b'N', b'U', b'M', ..] => npy::decode(bytes),

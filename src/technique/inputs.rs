@@ -6,7 +6,7 @@ use super::{
     Filter, FilterBy, GpuChannel, GradientStorage, Lattice, LightVolume, Mode, Operator, Role,
     SampleInputs, Settings, Skip, SkipBy,
 };
-use crate::gpu::{Bindings, Error, Gpu, Image, Layout, ParameterRing, Resource};
+use crate::gpu::{Bindings, Buffer, Error, Gpu, Image, Layout, ParameterRing, Resource};
 use crate::resident::{Brick, FootprintTexels, GpuTransfer, GpuVolume, TextureLayout};
 use crate::shaders::{MAX_CHANNELS, Shader, find, shader};
 use std::sync::Arc;
@@ -28,6 +28,8 @@ pub struct Inputs<'a> {
     pub light: Option<&'a LightVolume>,
     /// The scattered points of the view, where the settings ask for them.
     pub points: Option<&'a GpuViewPoints>,
+    /// The picture of the sky that paths find light in.
+    pub sky: Option<&'a Buffer>,
     /// Where not to look. Its [`Recording`](super::Recording::skip) must be told the same.
     pub skip: Skip<'a>,
 }
@@ -68,6 +70,8 @@ impl Inputs<'_> {
         let light = light.unwrap_or(self.ring.buffer());
         given.push(("blue_noise", Resource::sampled(self.volume.blue_noise())));
         given.push(("light_volume", Resource::Storage(light)));
+        let sky = self.sky.unwrap_or(self.ring.buffer());
+        given.push(("sky", Resource::Storage(sky)));
         if let Some(points) = self.points {
             given.push(("view_points", Resource::Storage(points.points())));
             given.push(("tile_points", Resource::Storage(points.tiles())));

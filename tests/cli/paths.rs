@@ -179,3 +179,92 @@ fn tone_is_for_screens_alone() {
         .assert_done();
     assert!(read("a.apng") != read("b.apng"));
 }
+
+/// A picture of Radiance, without runs: red, green, blue and the exponent of each pixel.
+fn hdr(width: u32, height: u32, pixel: impl Fn(u32) -> [u8; 4]) -> Vec<u8> {
+    let mut bytes =
+        format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n").into_bytes();
+    bytes.extend((0..width * height).flat_map(pixel));
+    bytes
+}
+
+#[test]
+fn a_picture_of_the_sky_lights_and_lies_behind() {
+    let folder = Folder::new();
+    // 128 / 256 * 2^1 = 1, and a sun of 64.
+    let sky = hdr(16, 8, |i| {
+        if i == 35 {
+            [128, 128, 128, 135]
+        } else {
+            [128, 128, 128, 129]
+        }
+    });
+    fs::create_dir(folder.path("skies")).expect("a folder");
+    fs::write(folder.path("skies/sun.hdr"), sky).expect("a file");
+    let words = "render phantom:head,n=24 --technique pathtrace --size 24x20 --spp 4 --force";
+    let mut seen = Vec::new();
+    for more in [
+        "--environment skies/sun.hdr",
+        "--environment skies/sun.hdr --environment-turn 90",
+        "--environment skies/sun.hdr --environment-strength 0.5",
+        "--environment skies/sun.hdr --background environment",
+        "--environment 1,1,1",
+        "--environment 1,1,1 --background environment",
+        "--environment 1,1,1 --environment-strength 0.5",
+    ] {
+        folder
+            .run(&format!("{words} {more} -o a.png"))
+            .assert_done();
+        let bytes = fs::read(folder.path("a.png")).expect("a picture");
+        assert!(!seen.contains(&bytes), "{more}");
+        seen.push(bytes);
+    }
+    folder
+        .run(&format!(
+            "{words} --environment skies/sun.hdr -o a.png --save-scene skies/s.json"
+        ))
+        .assert_done();
+    folder
+        .run("render --scene skies/s.json -o b.png")
+        .assert_done();
+    let read = |name| fs::read(folder.path(name)).expect("a file");
+    assert!(read("a.png") == read("b.png"));
+    let scene = String::from_utf8(read("skies/s.json")).expect("text");
+    assert!(scene.contains("\"sun.hdr\""), "{scene}");
+}
+
+#[test]
+fn what_is_no_sky_is_refused_by_name() {
+    let folder = Folder::new();
+    let black = hdr(16, 8, |_| [0; 4]);
+    let square = hdr(8, 8, |_| [128, 128, 128, 129]);
+    let cut = hdr(16, 8, |_| [128, 128, 128, 129])[..200].to_vec();
+    let huge = hdr(40_000, 1, |_| [0; 4])[..60].to_vec();
+    for (name, bytes) in [
+        ("black.hdr", black),
+        ("square.hdr", square),
+        ("cut.hdr", cut),
+        ("huge.hdr", huge),
+        ("text.hdr", b"no picture".to_vec()),
+    ] {
+        fs::write(folder.path(name), bytes).expect("a file");
+    }
+    let words = "render phantom:head,n=8 --technique pathtrace --size 8x8 --spp 1 -o a.png";
+    for (file, code, said) in [
+        ("black.hdr", 3, "it is black"),
+        ("square.hdr", 3, "8 x 8"),
+        ("cut.hdr", 3, "cut.hdr"),
+        ("huge.hdr", 3, "huge.hdr"),
+        ("text.hdr", 3, "text.hdr"),
+        ("none.exr", 3, "none.exr"),
+        ("1,2", 2, "a picture .hdr or .exr"),
+        ("sky.jpg", 2, "a picture .hdr or .exr"),
+    ] {
+        let ran = folder.run(&format!("{words} --environment {file}"));
+        ran.assert_refused(code, &[said]);
+    }
+    let ran = folder.run(&format!("{words} --environment-turn 3"));
+    ran.assert_refused(2, &["--environment"]);
+    let ran = folder.run("render phantom:head,n=8 --size 8x8 -o a.png --background environment");
+    ran.assert_refused(2, &["--background environment"]);
+}

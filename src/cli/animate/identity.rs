@@ -31,6 +31,7 @@ pub fn of_film(plan: &Plan, frames: &Frames) -> Result<Value, Error> {
         "input": input,
         "labels": labels?,
         "label_names": label_names?,
+        "environment": stamp_of(plan.scene.path.file())?,
         "opacity_from": stamp_of(plan.scene.opacity.file())?,
         "with": plan.scene.with.files().map(|file| stamp_of(Some(file))).collect::<Result<Vec<_>, _>>()?,
         "header": hash_of(|hasher| std::hash::Hasher::write(hasher, header.as_bytes())),

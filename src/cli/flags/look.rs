@@ -1,6 +1,6 @@
 //! `--look`: which defaults hold where no flag says otherwise.
 
-use super::{LightWord, Numbers, SceneFlags, ToneWord};
+use super::{EnvironmentWord, LightWord, SceneFlags, ToneWord};
 use crate::cli::progress::Progress;
 use crate::technique::{Mode, Technique};
 use crate::volume::Header;
@@ -68,7 +68,8 @@ impl SceneFlags {
             return;
         }
         let path = &mut self.path;
-        path.environment.get_or_insert(Numbers([SKY; 3]));
+        path.environment
+            .get_or_insert(EnvironmentWord::Even([SKY; 3]));
         path.surface_scattering.get_or_insert(SURFACE);
         path.density_scale.get_or_insert(DENSITY);
         path.f0.get_or_insert(F0);

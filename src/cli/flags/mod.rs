@@ -13,6 +13,7 @@ mod cuts;
 mod denoise;
 mod devices;
 mod empty_space;
+mod environment;
 mod gradient_filter;
 mod gradients;
 mod inlined;
@@ -49,6 +50,7 @@ pub use classification::{Classification, ClassificationFlags};
 pub use color::ColorWord;
 pub use component::Component;
 pub use denoise::DenoiseWord;
+pub use environment::EnvironmentWord;
 pub use gradient_filter::GradientFlags;
 pub use gradients::{boundaries_of, refuse_gradients_in};
 pub use inlined::{Inlined, function_in, inlined};
@@ -183,13 +185,19 @@ impl SceneFlags {
 
     fn settings_in(&self, sampling: &SamplingFlags, depth: Depth) -> Result<Settings, Error> {
         let settings = self.section.settings(sampling, depth)?;
+        if self.picture.shows_sky() && !settings.technique.traces_paths() {
+            return Err(Error::usage(
+                "--background environment is for --technique pathtrace",
+                "--background COLOR lies behind pictures of all techniques",
+            ));
+        }
         let settings = Settings {
             shading: self.light.shading(settings.mode)?,
             ambient_occlusion: self.light.occlusion(settings.mode)?,
             gradient_filter: self.gradient.filter(),
             gradient_storage: self.gradient.keep(),
             dim: self.labels.dim()?,
-            path: self.path.path(&self.light),
+            path: self.path.path(&self.light, self.picture.shows_sky())?,
             ..settings
         };
         sampling::check_ways(&settings)?;

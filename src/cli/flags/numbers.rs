@@ -80,12 +80,14 @@ impl From<Size> for String {
     }
 }
 
-/// `R,G,B`, `R,G,B,A` in sRGB numbers, another word for a colour ([`rgba`]), or `none`.
+/// `R,G,B`, `R,G,B,A` in sRGB numbers, another word for a colour ([`rgba`]), `none` or `environment`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum Background {
     /// The picture is transparent where nothing is.
     None,
+    /// The light of `--environment`.
+    Environment,
     /// Straight sRGB and alpha, 0 to 1.
     Color([f64; 4]),
 }
@@ -94,8 +96,10 @@ impl FromStr for Background {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        if text == "none" {
-            return Ok(Self::None);
+        match text {
+            "none" => return Ok(Self::None),
+            "environment" => return Ok(Self::Environment),
+            _ => {}
         }
         let color = match text.matches(',').count() {
             2 => {
@@ -117,6 +121,7 @@ impl fmt::Display for Background {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::None => f.write_str("none"),
+            Self::Environment => f.write_str("environment"),
             Self::Color(color) => Numbers(*color).fmt(f),
         }
     }

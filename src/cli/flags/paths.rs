@@ -1,12 +1,13 @@
 //! Path tracing: flags to [`PathTracing`].
 
 use super::numbers::positive;
-use super::{LightFlags, Numbers, finite};
+use super::{EnvironmentWord, Error, LightFlags, Numbers, finite};
 use crate::technique::pathtrace::{Lens, PathTracing, Phase};
 use crate::technique::{Light, LightSpace};
 use clap::Args;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
 use std::{fmt, str::FromStr};
 
 const HEADING: &str = "Path tracing";
@@ -51,10 +52,19 @@ pub struct PathFlags {
     #[arg(long, value_name = "PHASE", allow_hyphen_values = true, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub phase: Option<PhaseWord>,
-    /// Light from all around, linear red, green and blue [default: none]
-    #[arg(long, value_name = "R,G,B", help_heading = HEADING)]
+    /// Light from all around: linear red, green and blue, or a picture of all directions, .hdr or .exr, twice as wide as it
+    /// is high [default: none]
+    #[arg(long, value_name = "R,G,B|FILE", help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub environment: Option<Numbers<3>>,
+    pub environment: Option<EnvironmentWord>,
+    /// Multiplies light from all around [default: 1]
+    #[arg(long, value_name = "F", value_parser = positive, requires = "environment", help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub environment_strength: Option<f64>,
+    /// Turns the picture of --environment about z, degrees from x to y [default: 0]
+    #[arg(long, value_name = "DEG", value_parser = finite, allow_hyphen_values = true, requires = "environment", help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub environment_turn: Option<f64>,
     /// How much of matter scatters as a surface across its gradient: an edge as steep as the range of values over a voxel
     /// does so by the chance 1 - exp(-S) [default: 0, none]
     #[arg(long, value_name = "S", value_parser = finite, help_heading = HEADING)]
@@ -90,7 +100,7 @@ const MOST_UNASKED: u32 = 4096;
 
 impl PathFlags {
     /// What paths are, with the lights that others name.
-    pub fn path(&self, light: &LightFlags) -> PathTracing {
+    pub fn path(&self, light: &LightFlags, shows_sky: bool) -> Result<PathTracing, Error> {
         let default = PathTracing::default();
         let mut lights: Vec<Light> = light.light.iter().map(|word| word.light()).collect();
         if lights.is_empty() && self.environment.is_none() {
@@ -100,7 +110,13 @@ impl PathFlags {
                 srgb: [1.0; 3],
             });
         }
-        PathTracing {
+        let (sky, sky_picture) = match &self.environment {
+            None => (default.sky, None),
+            Some(EnvironmentWord::Even(light)) => (*light, None),
+            Some(EnvironmentWord::Picture(file)) => ([1.0; 3], Some(file.picture()?)),
+        };
+        let strength = self.environment_strength.unwrap_or(1.0);
+        Ok(PathTracing {
             samples: self.spp.unwrap_or(match self.noise.or(self.seconds) {
                 Some(_) => MOST_UNASKED,
                 None => default.samples,
@@ -114,7 +130,10 @@ impl PathFlags {
             phase: self.phase.map_or(default.phase, |word| word.0),
             lights,
             light_size_degrees: light.light_size.unwrap_or(default.light_size_degrees),
-            sky: self.environment.map_or(default.sky, |numbers| numbers.0),
+            sky: sky.map(|c| strength * c),
+            sky_picture,
+            sky_turn_degrees: self.environment_turn.unwrap_or(default.sky_turn_degrees),
+            shows_sky,
             denoise: self.denoise_picture,
             surface: self.surface_scattering.unwrap_or(default.surface),
             f0: self.f0.unwrap_or(default.f0),
@@ -124,6 +143,19 @@ impl PathFlags {
                 focus: self.focus_distance,
             }),
             ..default
+        })
+    }
+
+    /// The picture of the sky.
+    pub fn file(&self) -> Option<&Path> {
+        self.environment.as_ref().and_then(EnvironmentWord::file)
+    }
+
+    /// The same words with another path.
+    pub fn with_paths(&self, path: impl Fn(&Path) -> PathBuf) -> Self {
+        Self {
+            environment: self.environment.as_ref().map(|word| word.with_path(path)),
+            ..self.clone()
         }
     }
 
@@ -132,7 +164,7 @@ impl PathFlags {
         match *self == Self::default() {
             true => Vec::new(),
             false => vec![
-                "--spp, --noise, --seconds, --seed, --bounces, --density-scale, --albedo, --phase, --environment, --surface-scattering, --f0, --roughness, --aperture-radius, --focus-distance and --denoise-picture have no effect without --technique pathtrace",
+                "--spp, --noise, --seconds, --seed, --bounces, --density-scale, --albedo, --phase, --environment, --environment-strength, --environment-turn, --surface-scattering, --f0, --roughness, --aperture-radius, --focus-distance and --denoise-picture have no effect without --technique pathtrace",
             ],
         }
     }

@@ -14,9 +14,10 @@ pub struct PictureFlags {
     #[arg(long, value_name = "WxH", help_heading = "Picture")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub size: Option<Size>,
-    /// What lies behind: a colour by name, #hex or sRGB numbers from 0 to 1 [default: #18181c in PNG and
+    /// What lies behind: a colour by name, #hex or sRGB numbers from 0 to 1; environment: the light of --environment
+    /// [default: #18181c in PNG and
     /// films under --look auto, else none]
-    #[arg(long, value_name = "COLOR|none", help_heading = "Picture")]
+    #[arg(long, value_name = "COLOR|none|environment", help_heading = "Picture")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub background: Option<Background>,
     /// Layers beside the colours, for .exr and .npy
@@ -112,7 +113,7 @@ impl PictureFlags {
     pub fn background(&self) -> Option<[f64; 4]> {
         match self.background {
             Some(Background::Color(color)) => Some(color),
-            Some(Background::None) | None => None,
+            Some(Background::None | Background::Environment) | None => None,
         }
     }
 
@@ -131,6 +132,11 @@ impl PictureFlags {
     /// Bits of a channel of a PNG.
     pub fn bit_depth(&self) -> BitDepth {
         self.bit_depth.map_or(BitDepth::Eight, |Bits(depth)| depth)
+    }
+
+    /// Whether the light of `--environment` lies behind.
+    pub fn shows_sky(&self) -> bool {
+        self.background == Some(Background::Environment)
     }
 
     /// The layers asked for, each once, in the order of the words.

@@ -98,6 +98,7 @@ impl Renderer<'_> {
             }
             _ => None,
         };
+        let sky = self.path_sky.of(self.device.gpu(), scene)?;
         let beside = |recording: &Recording| -> Vec<_> {
             let others = parts[1..].iter();
             others
@@ -114,6 +115,7 @@ impl Renderer<'_> {
             beside,
             light: self.light.get(),
             points: points.as_ref(),
+            sky,
             skip,
         };
         let with_others = recordings.iter().zip(beside.iter().map(Vec::as_slice));

@@ -8,7 +8,7 @@ use crate::offscreen::targets::Targets;
 use crate::offscreen::time_slices::TimeSlices;
 use crate::offscreen::{
     Error,
-    renderer::{Ends, Skipped},
+    renderer::{Ends, PathSky, Skipped},
 };
 use crate::technique::parameter_ring;
 use crate::volume::Volume;
@@ -81,6 +81,7 @@ impl<'v> Renderer<'v> {
             passes_done: [0, 1],
             behind: None,
             path_ends: Ends::default(),
+            path_sky: PathSky::default(),
             device,
         })
     }

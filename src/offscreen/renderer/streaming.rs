@@ -241,6 +241,7 @@ impl<'v> Renderer<'v> {
                 beside: &[],
                 light: None,
                 points: None,
+                sky: None,
                 skip,
             });
             bricks.push(BrickPass {

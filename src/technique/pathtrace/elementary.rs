@@ -41,6 +41,26 @@ pub fn turned<R: Real>(part: R) -> [R; 2] {
     }
 }
 
+/// Which part of a turn a vector points to from x on, -1/2 to 1/2.
+pub fn turn_of<R: Real>([x, y]: [R; 2]) -> R {
+    let n = |x: f64| R::from_f64(x);
+    let half = [x.abs() + (x * x + y * y).sqrt(), y.abs()];
+    let norm = (half[0] * half[0] + half[1] * half[1]).sqrt();
+    let t = half[1] / (half[0] + norm).max(n(1e-30));
+    let q = t * t;
+    let terms = [-1.0 / 11.0, 1.0 / 9.0, -1.0 / 7.0, 1.0 / 5.0, -1.0 / 3.0];
+    let series = terms.into_iter().fold(n(0.0), |sum, c| q * (n(c) + sum));
+    let quarter = n(std::f64::consts::FRAC_2_PI) * t * (n(1.0) + series);
+    let turn = match x >= n(0.0) {
+        true => quarter,
+        false => n(0.5) - quarter,
+    };
+    match y >= n(0.0) {
+        true => turn,
+        false => -turn,
+    }
+}
+
 /// The direction at this cosine and part of a turn around a unit vector (Duff et al. 2017).
 pub fn around<R: Real>(axis: [R; 3], cosine: R, part: R) -> [R; 3] {
     let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));
@@ -58,6 +78,18 @@ pub fn around<R: Real>(axis: [R; 3], cosine: R, part: R) -> [R; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_turn_comes_back_from_its_vector() {
+        for i in 0..1000 {
+            let part = (f64::from(i) + 0.5) / 1000.0 - 0.5;
+            let (sine, cosine) = (std::f64::consts::TAU * part).sin_cos();
+            let found = turn_of([3.0 * cosine, 3.0 * sine]);
+            assert!((found - part).abs() < 1e-6, "{part} {found}");
+        }
+        assert_eq!(turn_of([0.0, 0.0]), 0.0);
+        assert_eq!(turn_of([1.0, 0.0]), 0.0);
+    }
     use crate::real::dot;
 
     #[test]

@@ -15,10 +15,12 @@ mod random;
 #[doc(hidden)]
 pub mod reference;
 mod rules;
+mod sky;
 mod surface;
 
 pub(crate) use denoise::denoised;
 pub use phase::Phase;
+pub use sky::{SkyError, SkyPicture};
 
 use super::gather::{Gather, GatherDesc, RayPass, rays_of};
 use super::registry::TechniqueDesc;
@@ -53,8 +55,14 @@ pub struct PathTracing {
     pub lights: Vec<Light>,
     /// How wide lights look, in degrees, 0 to 90.
     pub light_size_degrees: f64,
-    /// Radiance from all around, linear red, green and blue.
+    /// Radiance from all around, linear red, green and blue; or what that of a picture is multiplied by.
     pub sky: [f64; 3],
+    /// What comes from where. Directions to its light are drawn at each collision.
+    pub sky_picture: Option<SkyPicture>,
+    /// By how much the picture is turned about z, degrees, positive from x to y.
+    pub sky_turn_degrees: f64,
+    /// Whether the eye sees the sky behind the volume; else it is as transparent there as it is.
+    pub shows_sky: bool,
     /// The picture ends where its noise ([`Traced::noise`](crate::offscreen::Traced)) is no more than this, looked at where the
     /// number of paths has doubled. The CPU reference traces all.
     pub noise: Option<f64>,
@@ -96,6 +104,9 @@ impl Default for PathTracing {
             lights: Vec::new(),
             light_size_degrees: 0.0,
             sky: [0.0; 3],
+            sky_picture: None,
+            sky_turn_degrees: 0.0,
+            shows_sky: false,
             noise: None,
             seconds: None,
             denoise: false,
@@ -218,6 +229,9 @@ impl View<'_> {
         fields.path_seed = path.seed;
         fields.path_bounces = path.bounces.unwrap_or(u32::MAX);
         fields.path_sky = path.sky.map(|c| c as f32);
+        fields.path_sky_turn = (path.sky_turn_degrees / 360.0) as f32;
+        fields.path_sky_size = path.sky_picture.as_ref().map_or([0; 2], SkyPicture::size);
+        fields.path_sky_shown = path.shows_sky.into();
         fields.path_phase = path.phase.numbers();
         fields.path_density = path.density as f32;
         fields.path_albedo = path.albedo as f32;

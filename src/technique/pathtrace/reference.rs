@@ -1,9 +1,10 @@
 //! Path tracing on the CPU: CPU reference of `shaders/pathtrace.wgsl`.
 
+use super::SkyPicture;
 use super::elementary::{around, minus_ln, turned};
 use super::phase::{phase_cosine, phase_value};
 use super::random::random_numbers;
-use super::surface::{reflected, reflection};
+use super::surface::{reflected, reflection, reflection_density};
 use crate::ray::{Ray, domain_interval, pixel_ray, voxel_ray};
 use crate::real::{Real, add, dot, scale};
 use crate::shaders::Frame;
@@ -12,6 +13,8 @@ use crate::technique::reference::{Gathered, Samples, moved};
 /// Draws of a collision, and of the direction behind it.
 const OF_COLLISION: u32 = 0x4000_0000;
 const OF_DIRECTION: u32 = 0x8000_0000;
+/// And of a direction to a sky.
+const OF_SKY: u32 = 0xc000_0000;
 /// Behind so many bounces, weights under `LEAST` end by chance.
 const FEWEST_BOUNCES: u32 = 4;
 const LEAST: f64 = 0.1;
@@ -71,6 +74,8 @@ struct Path<R> {
     bounces: u32,
     draw: u32,
     has_met: bool,
+    /// Of its direction, per steradian.
+    density: R,
 }
 
 impl<R: Real> Path<R> {
@@ -87,6 +92,7 @@ impl<R: Real> Path<R> {
             bounces: 0,
             draw: 1,
             has_met: false,
+            density: zero,
         };
         while let Some((color, place)) = path.collide(of, &mut walk, &mut key) {
             path.has_met = true;
@@ -105,11 +111,13 @@ impl<R: Real> Path<R> {
                 incoming: walk.world.direction,
                 normal: normal_at(of, place, walk.world.direction, numbers[0]),
                 albedo,
+                sky: of.settings().path.sky_picture.as_ref(),
             };
             if !at.is_coated(frame) {
                 path.weight = std::array::from_fn(|c| path.weight[c] * albedo[c]);
             }
-            let (way, light) = at.light(frame, numbers);
+            key[2] = path.draw | OF_SKY;
+            let (way, light) = at.light(frame, numbers, key);
             if (0..3).any(|c| path.weight[c] * light[c] > zero) {
                 let way = Ray {
                     origin: from,
@@ -123,6 +131,7 @@ impl<R: Real> Path<R> {
             let numbers = random_numbers::<R>(key);
             path.bounces += 1;
             let (direction, weight) = at.scattered(frame, numbers);
+            path.density = at.density(frame, direction);
             path.weight = std::array::from_fn(|c| path.weight[c] * weight[c]);
             let kept = path.kept(frame, numbers[0]);
             path.weight = scale(path.weight, kept);
@@ -135,11 +144,31 @@ impl<R: Real> Path<R> {
             };
             walk = Walk::along(frame, next);
         }
-        if path.has_met {
-            let sky = frame.path_sky.map(R::from_f32);
-            path.radiance = std::array::from_fn(|c| path.radiance[c] + path.weight[c] * sky[c]);
-        }
+        let sky = path.sky(of, walk.world.direction);
+        path.radiance = std::array::from_fn(|c| path.radiance[c] + path.weight[c] * sky[c]);
+        path.has_met |= frame.path_sky_shown != 0;
         path
+    }
+
+    /// What comes from where the path leaves: of a picture by the balance heuristic.
+    fn sky(&self, of: &impl Samples<R>, way: [R; 3]) -> [R; 3] {
+        let frame = of.frame();
+        if !self.has_met && frame.path_sky_shown == 0 {
+            return [R::from_f64(0.0); 3];
+        }
+        let even = frame.path_sky.map(R::from_f32);
+        let Some(picture) = &of.settings().path.sky_picture else {
+            return even;
+        };
+        let (found, density) = picture.at(frame, way);
+        let part = match self.has_met {
+            true => {
+                let kinds = R::from_f64((frame.light_count + 1).into());
+                self.density / (self.density + density / kinds)
+            }
+            false => R::from_f64(1.0),
+        };
+        std::array::from_fn(|c| found[c] * even[c] * part)
     }
 
     /// The next numbers of the path.
@@ -259,31 +288,52 @@ fn normal_at<R: Real>(
 }
 
 /// Where a path has met matter.
-struct Collision<R> {
+struct Collision<'a, R> {
     /// Of travel.
     incoming: [R; 3],
     /// `None`: in the medium.
     normal: Option<[R; 3]>,
     albedo: [R; 3],
+    sky: Option<&'a SkyPicture>,
 }
 
-impl<R: Real> Collision<R> {
+impl<R: Real> Collision<'_, R> {
     /// Whether its albedo is only a part of what is reflected there.
     fn is_coated(&self, frame: &Frame) -> bool {
         frame.path_f0 > 0.0 && self.normal.is_some()
     }
 
     /// The way to one of the lights, and what it gives if nothing is in the way.
-    fn light(&self, frame: &Frame, numbers: [R; 4]) -> ([R; 3], [R; 3]) {
+    fn light(&self, frame: &Frame, numbers: [R; 4], key: [u32; 4]) -> ([R; 3], [R; 3]) {
         let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));
-        if frame.light_count == 0 {
+        let kinds = frame.light_count + u32::from(self.sky.is_some());
+        if kinds == 0 {
             return ([zero; 3], [zero; 3]);
         }
-        let count = R::from_f64(frame.light_count.into());
-        let i = ((numbers[1] * count).to_i32() as u32).min(frame.light_count - 1) as usize;
+        let count = R::from_f64(kinds.into());
+        let i = ((numbers[1] * count).to_i32() as u32).min(kinds - 1) as usize;
         let vector = |[x, y, z, _]: [f32; 4]| [x, y, z].map(R::from_f32);
-        let cosine = one - numbers[2] * R::from_f32(frame.path_light_size);
-        let way = around(vector(frame.light_directions[i]), cosine, numbers[3]);
+        let (way, color) = match self.sky {
+            Some(sky) if i == frame.light_count as usize => {
+                let way = sky.drawn(frame, random_numbers(key));
+                let (radiance, density) = sky.at(frame, way);
+                let both = density + count * self.density(frame, way);
+                let pi = R::from_f64(std::f64::consts::PI);
+                let color = match density > zero {
+                    true => {
+                        let factor = frame.path_sky.map(R::from_f32);
+                        std::array::from_fn(|c| radiance[c] * factor[c] / (pi * both))
+                    }
+                    false => [zero; 3],
+                };
+                (way, color)
+            }
+            _ => {
+                let cosine = one - numbers[2] * R::from_f32(frame.path_light_size);
+                let way = around(vector(frame.light_directions[i]), cosine, numbers[3]);
+                (way, vector(frame.light_colors[i]))
+            }
+        };
         let part = match self.normal {
             Some(normal) => reflected(
                 frame,
@@ -295,8 +345,18 @@ impl<R: Real> Collision<R> {
                 [R::from_f64(std::f64::consts::PI) * phase; 3]
             }
         };
-        let color = vector(frame.light_colors[i]);
         (way, std::array::from_fn(|c| count * part[c] * color[c]))
+    }
+
+    /// How often the path goes on in a direction, per steradian.
+    fn density(&self, frame: &Frame, way: [R; 3]) -> R {
+        match self.normal {
+            Some(normal) => {
+                let to_eye = scale(self.incoming, R::from_f64(-1.0));
+                reflection_density(frame, [normal, to_eye, way])
+            }
+            None => phase_value(frame, dot(self.incoming, way)),
+        }
     }
 
     /// Where the path goes on, and what its weight is multiplied by.

@@ -123,6 +123,14 @@ impl PathTracing {
         let size = self.light_size_degrees;
         let is_right = (0.0..=90.0).contains(&size);
         Error::unless(is_right, "the size of lights", "0 to 90 degrees", size)?;
+        let turn = self.sky_turn_degrees;
+        let is_right = turn.abs() <= 3600.0;
+        Error::unless(
+            is_right,
+            "the turn of the sky",
+            "-3600 to 3600 degrees",
+            turn,
+        )?;
         for c in self.sky {
             let is_right = c >= 0.0 && c.is_finite();
             Error::unless(is_right, "light of the sky", "0 or more", c)?;

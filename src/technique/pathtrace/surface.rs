@@ -63,6 +63,25 @@ pub fn reflected<R: Real>(
     albedo.map(|c| light * (below * c + n::<R>(PI) * coat))
 }
 
+/// How often a direction is drawn, per steradian.
+pub fn reflection_density<R: Real>(frame: &Frame, [normal, to_eye, way]: [[R; 3]; 3]) -> R {
+    let lambert = dot(normal, way).max(n(0.0)) / n(PI);
+    if frame.path_f0 == 0.0 {
+        return lambert;
+    }
+    let eye = dot(normal, to_eye);
+    let by_coat = chance_of_coat(frame, eye);
+    let between = direction_of(add(to_eye, way));
+    let coat =
+        n::<R>(0.5) * half_vectors(frame, dot(normal, between)) / (eye + masking(frame, eye));
+    by_coat * coat + (n::<R>(1.0) - by_coat) * lambert
+}
+
+fn chance_of_coat<R: Real>(frame: &Frame, cosine: R) -> R {
+    let least = n::<R>(LEAST_OF_COAT);
+    least + (n::<R>(1.0) - least) * fresnel(frame, cosine)
+}
+
 /// A direction, and what a path that goes on there is multiplied by; of Lambert without its albedo.
 pub fn reflection<R: Real>(
     frame: &Frame,
@@ -76,8 +95,7 @@ pub fn reflection<R: Real>(
         return (around(normal, (one - u).sqrt(), v), [one; 3]);
     }
     let eye = dot(normal, to_eye);
-    let least = n::<R>(LEAST_OF_COAT);
-    let by_coat = least + (one - least) * fresnel(frame, eye);
+    let by_coat = chance_of_coat(frame, eye);
     let way = match by < by_coat {
         true => mirrored(frame, normal, to_eye, [u, v]),
         false => around(normal, (one - u).sqrt(), v),
@@ -86,10 +104,7 @@ pub fn reflection<R: Real>(
     if light <= zero || eye <= zero {
         return (way, [zero; 3]);
     }
-    let between = direction_of(add(to_eye, way));
-    let of_coat =
-        n::<R>(0.5) * half_vectors(frame, dot(normal, between)) / (eye + masking(frame, eye));
-    let density = by_coat * of_coat + (one - by_coat) * light / n(PI);
+    let density = reflection_density(frame, [normal, to_eye, way]);
     let seen = reflected(frame, [normal, to_eye, way], albedo);
     (way, seen.map(|c| c / (n::<R>(PI) * density)))
 }

@@ -3,6 +3,7 @@
 
 mod camera;
 mod noise;
+mod sky;
 mod surfaces;
 
 use crate::shared::{device, volume_of};
@@ -12,7 +13,7 @@ use stratavox::color::encode_srgb;
 use stratavox::offscreen::{self, Renderer};
 use stratavox::picture::Picture;
 use stratavox::scene::{Beside, Scene};
-use stratavox::technique::pathtrace::{Lens, PathTracing, Phase};
+use stratavox::technique::pathtrace::{Lens, PathTracing, Phase, SkyPicture};
 use stratavox::technique::{ClipPlane, Filter, Light, LightSpace, Settings, Technique};
 use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
 use stratavox::volume::{Rescale, Volume, Voxels};
@@ -389,10 +390,20 @@ fn the_shader_traces_the_paths_of_its_reference() {
         }),
         ..lit()
     };
+    let pixels: Vec<_> = (0..32)
+        .map(|i| [0.2, 0.1 + 0.05 * (i % 7) as f32, 0.3])
+        .collect();
+    let under_a_picture = PathTracing {
+        sky: [1.0; 3],
+        sky_picture: Some(SkyPicture::new([8, 4], &pixels).expect("a sky")),
+        shows_sky: true,
+        ..coated.clone()
+    };
     for (name, volume, path, conformance) in [
         ("f32", floats.clone(), lit(), true),
         ("coated, by a lens", floats.clone(), coated, true),
-        ("u8", of_codes(&floats, u8::MAX), lit(), false),
+        ("under a picture", floats.clone(), under_a_picture, true),
+        ("u8", of_codes(&floats, u8::MAX.into()), lit(), false),
         ("u16", of_codes(&floats, u16::MAX), lit(), false),
     ] {
         let settings = Settings {

@@ -139,6 +139,7 @@ impl Ready {
                 beside: &[],
                 light: None,
                 points: None,
+                sky: None,
                 skip: Skip::Nothing,
             })
             .unwrap()
