@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! cells of an axis   min(voxels, 128), all of one size: none is smaller than a voxel
-//! looks at a cell    ceil(voxels of the cell) along each axis, at most 4
+//! looks at a cell    ceil(voxels of the cell) along each axis, at most 4; of several grids those of the finest
 //! occlusion          32 paths all around, from one cell to the radius
 //! shadow             8 paths over the disc of the light, from the node to the end of the grid
 //! ```
@@ -15,6 +15,7 @@ use super::light_paths::{all_around, path, towards};
 use super::{Error, Mode, View};
 use crate::shaders::{FrameFields, LightGrid, LightGridFields};
 use crate::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
+use crate::volume::Grid;
 use glam::DVec3;
 
 /// Darkness where little light comes in from all around.
@@ -87,6 +88,17 @@ impl LightPlan {
             looks: cell_voxels.map(|n| (n.ceil() as u32).clamp(1, MAX_LOOKS)),
             bundle_count: 0,
             paths: Vec::new(),
+        }
+    }
+
+    /// Looks as often as the voxels of another grid ask for, which matter on `first` is seen together with: nothing of a
+    /// finer grid is passed over.
+    pub(crate) fn look_at(&mut self, first: &Grid, other: &Grid) {
+        let own = other.world_from_voxel.inverse() * first.world_from_voxel;
+        for (k, looks) in self.looks.iter_mut().enumerate() {
+            let side = own.matrix3.col(k) * self.cell_voxels[k];
+            let voxels = side.abs().max_element().ceil();
+            *looks = (*looks).max((voxels as u32).min(MAX_LOOKS));
         }
     }
 
