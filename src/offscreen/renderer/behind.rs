@@ -32,10 +32,13 @@ const NOTHING: f32 = 1e30;
 pub(super) struct Behind {
     geometry: Arc<RoundCones>,
     /// What was seen last, from where, and cut by which planes.
-    seen: Option<((Camera, InPixel, Vec<ClipPlane>), Seen)>,
+    seen: Option<(SeenBy, Seen)>,
     /// Its depths on the device.
     image: Option<DepthImage>,
 }
+
+/// From where, through which place of each pixel, and behind which planes.
+type SeenBy = (Camera, InPixel, Vec<ClipPlane>);
 
 #[derive(Debug)]
 struct DepthImage {
