@@ -7,16 +7,12 @@
 // So a cell half full of something opaque is half transparent, and uniform matter keeps its extinction. What has no
 // data absorbs nothing. Bricks add their looks one after the other. CPU reference: src/technique/light_field.rs.
 
-#import gradient
 #import light_grid
 #import brick
 #import cells_{layout}
-#import sample_scalar_gradient
-#import transfer_{transfer}
-#import widgets
-#import norm
-#import second_derivative
+#import matter_{matter=of_one}
 #import extinction
+#import opacity
 
 @group(0) @binding(27) var<storage, read_write> light_cells: LightNumbers;
 
@@ -46,21 +42,10 @@ fn main(@builtin(global_invocation_id) cell: vec3<u32>) {
 
 // Of matter like that at a position, over a cell; 0 in another brick.
 fn opacity_of(voxel: vec3<f32>) -> f32 {
-    let place = place_at(voxel);
-    if !is_in_brick(voxel) || !has_data(place) {
+    if !is_in_brick(voxel) {
         return 0.0;
     }
-    let value = volume_value(place);
-    var material = classify(value);
-    if are_widgets() {
-        let gradient = gradient_at(place);
-        var second = 0.0;
-        if wants_second() {
-            second = second_derivative_at(place, gradient);
-        }
-        material = classify_by_gradient(material, value, norm(gradient), second);
-    }
-    return opacity_over(material.extinction, light_grid.cell_length);
+    return opacity_over(extinction_at(place_at(voxel)), light_grid.cell_length);
 }
 
 // Exact for the crop, and for a plane that one axis of the cell stands across.

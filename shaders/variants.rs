@@ -42,7 +42,7 @@ impl Slot {
 pub const CONSTANTS: &[&str] = &[
     "software", "filter", "holes", "lattice", "cuts", "transfer", "end", "mode", "kernel",
     "operator", "blend", "output", "topology", "layers", "sheets", "take", "grids", "light",
-    "space",
+    "space", "matter",
 ];
 
 /// The name of an import with its slots filled. `{slot=word}` has that word where an entry has no such slot.
@@ -151,8 +151,12 @@ const ADAPTIVE: Slot = slot("inputs", &["adaptive"]);
 const WHOLE: Slot = slot("holes", &["none"]);
 /// Whether volumes that are mixed lie on the grid of the first, or on grids of their own.
 const GRIDS: Slot = constant("grids", &["shared", "own"]);
-/// Whether light falls on volumes that are mixed, on slabs, and on samples between slices.
+/// Whether light falls on slabs, and on samples between slices.
 const LIGHT: Slot = constant("light", &["unlit", "lit"]);
+/// The same of volumes that are mixed, where light may be hindered on its way.
+const MIXED_LIGHT: Slot = constant("light", &["unlit", "lit", "hindered"]);
+/// What is in the way of light, where it is more than one volume.
+const MATTER: Slot = constant("matter", &["of_channels", "of_colors"]);
 const MIXED: Slot = slot("inputs", &["channels", "colors"]);
 const MODE: Slot = slot("mode", &["composite"]);
 /// Modes that slicers do not have leave the lattice of slicers to them.
@@ -213,7 +217,16 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     (
         "raycast",
         &[
-            LINE, MODE, MIXED, LATTICE, NARROW, HOLES, TABLE, LIGHT, GRIDS, LAYERS,
+            LINE,
+            MODE,
+            MIXED,
+            LATTICE,
+            NARROW,
+            HOLES,
+            TABLE,
+            MIXED_LIGHT,
+            GRIDS,
+            LAYERS,
         ],
     ),
     (
@@ -226,7 +239,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
             NARROW_FETCHED,
             HOLES,
             POINTS,
-            LIGHT,
+            MIXED_LIGHT,
             GRIDS,
             LAYERS,
         ],
@@ -293,7 +306,16 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     (
         "slices_3d",
-        &[TESTED, BLEND, MIXED, NARROW, HOLES, TRANSFER, LIGHT, GRIDS],
+        &[
+            TESTED,
+            BLEND,
+            MIXED,
+            NARROW,
+            HOLES,
+            TRANSFER,
+            MIXED_LIGHT,
+            GRIDS,
+        ],
     ),
     (
         "slices_3d",
@@ -324,7 +346,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     (
         "slices_2d",
-        &[TESTED, BLEND, MIXED, NARROW, HOLES, TRANSFER, LIGHT],
+        &[TESTED, BLEND, MIXED, NARROW, HOLES, TRANSFER, MIXED_LIGHT],
     ),
     ("slices_2d", &[NUMBER, SCALAR, END, FILTER, HOLES]),
     (
@@ -454,6 +476,28 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
             HOLES,
             POINTS,
             TAPS,
+        ],
+    ),
+    // Of several volumes: those on grids of their own are interpolated where cells look.
+    (
+        "light_cells",
+        &[
+            slot("layout", &["box"]),
+            NARROW_FETCHED,
+            HOLES,
+            POINTS,
+            MATTER,
+            GRIDS,
+        ],
+    ),
+    (
+        "light_cells",
+        &[
+            slot("layout", &["stack"]),
+            slot("filter", &["nearest"]),
+            HOLES,
+            POINTS,
+            MATTER,
         ],
     ),
     ("light_volume", &[]),

@@ -147,8 +147,8 @@ impl<'a> Scene<'a> {
     /// # Errors
     /// [`Error::OtherGrid`], [`Error::TooManyChannels`], [`Error::NoColor`], [`Error::NotMixed`],
     /// [`Error::NotShaded`], [`Error::NotShadedTogether`], [`Error::NoGradientTransfer`], [`Error::GradientTransferAlone`],
-    /// [`Error::NotOccluded`], [`Error::NotOccludedTogether`], [`Error::FilterAlone`], [`Error::OpacityOfNothing`],
-    /// [`Error::NotFor`] and those of [`Settings::check`].
+    /// [`Error::NotOccluded`], [`Error::FilterAlone`], [`Error::OpacityOfNothing`], [`Error::NotFor`] and those of
+    /// [`Settings::check`].
     pub fn check(&self) -> Result<(), Error> {
         let labels = self.labels_over();
         if !labels.is_empty() {
@@ -248,9 +248,6 @@ impl<'a> Scene<'a> {
             Beside::Channels([one]) if one.role == Role::Numbers => {
                 if filter.kernel().is_some() {
                     return Err(Error::FilterAlone { filter });
-                }
-                if self.settings.wants_light_volume() {
-                    return Err(Error::NotOccludedTogether);
                 }
                 match one.transfer {
                     None => Err(Error::NoTransferFunction),

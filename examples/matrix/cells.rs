@@ -335,7 +335,57 @@ pub const FEATURES: &[Feature] = &[
             s.shading = Some(lights());
         },
     ),
+    feature(
+        "occlusion and shadows, several channels",
+        "`--channel`, `--ambient-occlusion`, `--shadows volume`",
+        Seen::Channels,
+        hindered,
+    ),
+    feature(
+        "occlusion and shadows, volumes on grids of their own",
+        "`--with`, `--ambient-occlusion`, `--shadows volume`",
+        Seen::OwnGrids,
+        hindered,
+    ),
+    feature(
+        "occlusion and shadows, labels over it",
+        "`--labels`, `--ambient-occlusion`, `--shadows volume`",
+        Seen::Labelled,
+        hindered,
+    ),
+    feature(
+        "occlusion and shadows, colours",
+        "a file of colours, `--ambient-occlusion`, `--shadows volume`",
+        Seen::Colored,
+        hindered,
+    ),
+    feature(
+        "occlusion and shadows, opacity by another",
+        "`--opacity-from`, `--ambient-occlusion`, `--shadows volume`",
+        Seen::Veiled,
+        hindered,
+    ),
+    feature(
+        "occlusion and shadows, pre-classification",
+        "`--preclassified`, `--ambient-occlusion`, `--shadows volume`",
+        Seen::Classified,
+        hindered,
+    ),
 ];
+
+/// Matter takes light away, from all around and of lamps.
+fn hindered(s: &mut Settings) {
+    s.ambient_occlusion = Some(AmbientOcclusion {
+        strength: 0.9,
+        radius_world: None,
+    });
+    s.shading = Some(Shading {
+        shadows: Shadows::Volume {
+            light_size_degrees: 6.0,
+        },
+        ..lights()
+    });
+}
 
 fn lights() -> Shading {
     let light = |towards, srgb| Light::of_world(towards, srgb);

@@ -25,3 +25,9 @@ fn channel_coding(channel: u32) -> Coding {
         frame.channel_codes_are_integers[channel],
     );
 }
+
+// True where the next channel says how opaque this one is.
+fn is_opaque_by_next(channel: u32) -> bool {
+    let next = channel + 1u;
+    return next < frame.channel_count && frame.channel_is_opacity[next] != 0u;
+}

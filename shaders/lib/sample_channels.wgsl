@@ -12,12 +12,6 @@ struct Sample {
     ray_direction: vec3<f32>,
 }
 
-// True where the next channel says how opaque this one is.
-fn is_opaque_by_next(channel: u32) -> bool {
-    let next = channel + 1u;
-    return next < frame.channel_count && frame.channel_is_opacity[next] != 0u;
-}
-
 // Labels without data hide what lies there; else one channel with data is enough. A channel that is opaque by
 // another one has data where both have.
 fn has_data(place: Place) -> bool {

@@ -3,6 +3,7 @@
 // CPU reference: src/technique/mixture.rs.
 
 #import channels
+#import luma
 
 struct Sample {
     srgb: vec3<f32>,
@@ -29,11 +30,6 @@ fn sample_at(place: Place, ray_direction: vec3<f32>) -> Sample {
     let alpha = channel_value(3u, place);
     // What is transparent has no colour.
     return Sample(clamp(color / max(alpha, 1e-6), vec3(0.0), vec3(1.0)), alpha, place, ray_direction);
-}
-
-// ITU-R BT.709, of sRGB numbers.
-fn luma(srgb: vec3<f32>) -> f32 {
-    return 0.2126 * srgb.x + 0.7152 * srgb.y + 0.0722 * srgb.z;
 }
 
 fn value_of(sample: Sample) -> f32 {

@@ -140,9 +140,6 @@ impl From<offscreen::Error> for Error {
                 error.to_string(),
                 "--gradients auto keeps them where it can",
             ),
-            offscreen::Error::Technique(technique::Error::NotOccludedTogether) => {
-                Self::not_occluded_together()
-            }
             offscreen::Error::Technique(error @ technique::Error::OutOfRange { .. }) => {
                 Self::usage(
                     error.to_string(),
@@ -198,14 +195,6 @@ impl Error {
         Self::usage(
             "--shadows half-angle is for one number a voxel, and several are drawn",
             "draw one of them: --component 0, without --labels, --channel and --opacity-variable",
-        )
-    }
-
-    /// Light is followed through one volume.
-    pub fn not_occluded_together() -> Self {
-        Self::usage(
-            "--ambient-occlusion and --shadows volume are for one number a voxel, and several are drawn",
-            "draw one of them: --component 0, without --labels, --channel and --iso-color-by",
         )
     }
 

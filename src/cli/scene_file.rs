@@ -81,6 +81,8 @@ pub fn overlay(mut scene: SceneFlags, flags: &SceneFlags) -> SceneFlags {
     }
     scene.camera.give_way_to(&flags.camera);
     if flags.section.section.is_some() {
+        // Positions are those of planes that face as they did.
+        scene.section.at.clear();
         scene.camera.leave_the_eye();
     } else if flags.camera.places_the_eye() {
         scene.section = Default::default();

@@ -50,7 +50,15 @@ pub struct Vertex {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RoundCones {
     vertices: Vec<Vertex>,
-    segments: Vec<[u32; 2]>,
+    segments: Vec<Segment>,
+}
+
+/// One of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Segment {
+    ends: [u32; 2],
+    /// No plane cuts it.
+    is_whole: bool,
 }
 
 impl RoundCones {
@@ -59,25 +67,40 @@ impl RoundCones {
     /// # Panics
     /// Where there would be more than 2^32 vertices.
     pub fn add_line(&mut self, vertices: impl IntoIterator<Item = Vertex>) {
-        let number = |n: usize| u32::try_from(n).expect("at most 2^32 vertices");
+        let segment = |a: usize, b: usize| Segment {
+            ends: [a, b].map(|n| u32::try_from(n).expect("at most 2^32 vertices")),
+            is_whole: false,
+        };
         let first = self.vertices.len();
         self.vertices.extend(vertices);
         let last = self.vertices.len();
         match last - first {
             0 => {}
-            1 => self.segments.push([number(first); 2]),
+            1 => self.segments.push(segment(first, first)),
             _ => self
                 .segments
-                .extend((first..last - 1).map(|i| [number(i), number(i + 1)])),
+                .extend((first..last - 1).map(|i| segment(i, i + 1))),
         }
+    }
+
+    /// Adds a sphere that is a symbol: no plane cuts it.
+    ///
+    /// # Panics
+    /// As [`Self::add_line`].
+    pub fn add_symbol(&mut self, vertex: Vertex) {
+        self.add_line([vertex]);
+        self.segments.last_mut().expect("added above").is_whole = true;
     }
 
     /// Adds all of the other.
     pub fn add(&mut self, other: &Self) {
         let first = self.vertices.len() as u32;
         self.vertices.extend_from_slice(&other.vertices);
-        let moved = other.segments.iter().map(|ends| ends.map(|i| i + first));
-        self.segments.extend(moved);
+        let moved = |segment: &Segment| Segment {
+            ends: segment.ends.map(|i| i + first),
+            ..*segment
+        };
+        self.segments.extend(other.segments.iter().map(moved));
     }
 
     /// How many cones there are.
@@ -92,7 +115,9 @@ impl RoundCones {
 
     /// The cone of a segment, and the colours of its ends.
     fn cone(&self, segment: usize) -> (RoundCone, [[f32; 3]; 2]) {
-        let ends = self.segments[segment].map(|i| self.vertices[i as usize]);
+        let ends = self.segments[segment]
+            .ends
+            .map(|i| self.vertices[i as usize]);
         let cone = RoundCone {
             ends: ends.map(|end| end.place),
             radii: ends.map(|end| end.radius),

@@ -7,6 +7,13 @@
 //! spheres  t = -m - sqrt(m^2 - q + r^2),   m = d.(o - c),  q = |o - c|^2
 //! ```
 //!
+//! It is solid: a ray that begins inside meets its cut, where a sphere of the hull holds the point p. With u = |b - a|,
+//! y along the axis and h beside it the nearest of them lies at
+//!
+//! ```text
+//! x = y - h k / sqrt(1 - k^2),  k = dr / u,  0 <= x <= u       inside: |p - c(x)| <= r_a - k x
+//! ```
+//!
 //! The origin of the ray is moved to where it is nearest to the middle, so that nothing is lost far away.
 
 use glam::DVec3;
@@ -39,6 +46,50 @@ impl RoundCone {
         let found = self.hit_from(origin + nearer * direction, direction, [a, b], [ra, rb])?;
         let distance = nearer + found.distance;
         (distance > 0.0).then_some(Hit { distance, ..found })
+    }
+
+    /// Where a ray that begins so far along it, at a cut through `face`, meets it first: at the cut where that lies inside.
+    pub fn hit_after(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        begin: f64,
+        face: DVec3,
+    ) -> Option<Hit> {
+        if let Some(part) = self.part_inside(origin + begin * direction) {
+            return Some(Hit {
+                distance: begin,
+                normal: face,
+                part,
+            });
+        }
+        // It is convex: what lies behind the cut begins there.
+        let found = self.hit(origin, direction);
+        found.filter(|hit| hit.distance >= begin)
+    }
+
+    /// Between the ends, where it holds a point.
+    fn part_inside(&self, p: DVec3) -> Option<f64> {
+        let ([a, b], [ra, rb]) = (self.ends, self.radii);
+        let (axis, from) = (b - a, p - a);
+        let length = axis.length();
+        // One sphere holds the other: cosines past their ends.
+        let slope = ((ra - rb) / length.max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0);
+        let along = axis.normalize_or_zero();
+        let y = from.dot(along);
+        let beside = (from - y * along).length();
+        let nearest = match slope.abs() < 1.0 {
+            true => y - beside * slope / (1.0 - slope * slope).sqrt(),
+            false if slope > 0.0 => 0.0,
+            false => length,
+        };
+        let x = nearest.clamp(0.0, length);
+        let radius = match x {
+            0.0 => ra,
+            x => ra + (rb - ra) * (x / length),
+        };
+        let is_inside = (from - x * along).length_squared() <= radius * radius;
+        is_inside.then(|| x / length.max(f64::MIN_POSITIVE))
     }
 
     fn hit_from(&self, o: DVec3, d: DVec3, [a, b]: [DVec3; 2], [ra, rb]: [f64; 2]) -> Option<Hit> {
@@ -181,6 +232,39 @@ mod tests {
             }
         }
         assert!(hits > 400, "{hits}");
+    }
+
+    #[test]
+    fn a_ray_that_begins_inside_meets_the_cut_and_one_behind_nothing() {
+        let (mut cuts, mut surfaces, mut missed) = (0, 0, 0);
+        for cone in &cones() {
+            for i in 0..900 {
+                let turn = f64::from(i) * 2.399_963;
+                let aim = dvec3((3.0 * turn).sin(), turn.cos(), (2.0 * turn).cos());
+                let o = dvec3(4.0 * turn.sin(), 4.0 * (0.7 * turn).cos(), 5.0);
+                let d = (0.8 * aim - o).normalize();
+                let begin = 3.0 + 0.004 * f64::from(i);
+                let inside = distance(cone, o + begin * d);
+                if inside.abs() < 1e-9 {
+                    continue;
+                }
+                let found = cone.hit_after(o, d, begin, DVec3::Z);
+                if inside < 0.0 {
+                    let found = found.expect("the cut");
+                    assert_eq!((found.distance, found.normal), (begin, DVec3::Z));
+                    assert!((0.0..=1.0).contains(&found.part));
+                    cuts += 1;
+                    continue;
+                }
+                assert_eq!(found, cone.hit(o, d).filter(|hit| hit.distance >= begin));
+                match found {
+                    Some(_) => surfaces += 1,
+                    None => missed += 1,
+                }
+            }
+        }
+        let counts = [cuts, surfaces, missed];
+        assert!(counts.iter().all(|&count| count > 100), "{counts:?}");
     }
 
     #[test]

@@ -8,8 +8,9 @@
 //! bounds are tried. The nearest hit stays, so the order of cones does not matter but where two are equally near: there the
 //! first stays.
 
-use super::{RoundCones, bounds::Bounds};
+use super::{Hit, RoundCone, RoundCones, bounds::Bounds};
 use crate::camera::Camera;
+use glam::DVec3;
 use std::ops::Range;
 
 /// What the light at the eye leaves of a surface that is seen from the side.
@@ -41,6 +42,18 @@ struct Candidate {
 impl RoundCones {
     /// What `camera` sees in a picture of so many pixels, by rays through a place in each pixel, counted from its centre.
     pub fn seen(&self, camera: &Camera, extent: [u32; 2], at: [f64; 2]) -> Seen {
+        self.seen_cut(camera, extent, at, &[])
+    }
+
+    /// The same of what lies in all of these half-spaces, `normal . x >= offset` in the world, with unit normals. The cones
+    /// are solid: cuts through them are seen. Symbols stay whole.
+    pub fn seen_cut(
+        &self,
+        camera: &Camera,
+        extent: [u32; 2],
+        at: [f64; 2],
+        planes: &[(DVec3, f64)],
+    ) -> Seen {
         let bounds = Bounds::new(camera, extent, at);
         let [width, height] = extent;
         let bands = height.div_ceil(BAND) as usize;
@@ -81,11 +94,15 @@ impl RoundCones {
                 let top = band as u32 * BAND;
                 for candidate in cones {
                     let (cone, colors) = self.cone(candidate.segment);
+                    let planes = match self.segments[candidate.segment].is_whole {
+                        true => &[][..],
+                        false => planes,
+                    };
                     for y in candidate.rows.clone() {
                         for x in candidate.columns.clone() {
                             let place = [x, y].map(|n| f64::from(n) + 0.5);
                             let (origin, direction) = rays.at(place[0] + at[0], place[1] + at[1]);
-                            let Some(hit) = cone.hit(origin, direction) else {
+                            let Some(hit) = first_of(&cone, origin, direction, planes) else {
                                 continue;
                             };
                             let i = ((y - top) * width + x) as usize;
@@ -108,6 +125,32 @@ impl RoundCones {
         });
         seen
     }
+}
+
+/// Where a ray meets what the planes leave of a cone.
+fn first_of(
+    cone: &RoundCone,
+    origin: DVec3,
+    direction: DVec3,
+    planes: &[(DVec3, f64)],
+) -> Option<Hit> {
+    let (mut begin, mut end, mut face) = (0.0, f64::INFINITY, DVec3::ZERO);
+    for &(normal, offset) in planes {
+        let (height, slope) = (normal.dot(origin) - offset, normal.dot(direction));
+        let meets = -height / slope;
+        if slope > 0.0 && meets > begin {
+            (begin, face) = (meets, normal);
+        } else if slope < 0.0 {
+            end = meets.min(end);
+        } else if slope == 0.0 && height < 0.0 {
+            return None;
+        }
+    }
+    let hit = match begin == 0.0 {
+        true => cone.hit(origin, direction),
+        false => cone.hit_after(origin, direction, begin, face),
+    };
+    hit.filter(|hit| hit.distance <= end)
 }
 
 fn mixed([a, b]: [[f32; 3]; 2], part: f64) -> [f32; 3] {
@@ -187,6 +230,46 @@ mod tests {
             }
             assert!(hits > 200, "{hits}");
         }
+    }
+
+    #[test]
+    fn planes_leave_a_ball_its_cap_and_its_cut() {
+        let mut cones = RoundCones::default();
+        cones.add_line([Vertex {
+            place: DVec3::ZERO,
+            radius: 1.0,
+            color: [0.5; 3],
+        }]);
+        let camera = Camera {
+            eye: dvec3(0.0, 0.0, 9.0),
+            target: DVec3::ZERO,
+            up: DVec3::Y,
+            projection: Projection::Orthographic { view_height: 4.0 },
+            zoom: 1.0,
+        };
+        // Between heights 0.2 and 0.5, to the right of 0.1.
+        let planes = [(DVec3::Z, 0.2), (DVec3::NEG_Z, -0.5), (DVec3::X, 0.1)];
+        let seen = cones.seen_cut(&camera, [40, 40], [0.0; 2], &planes);
+        let facing = AMBIENT + DIFFUSE;
+        let (mut cut, mut cap) = (0, 0);
+        for (i, (pixel, distance)) in seen.pixels.iter().zip(&seen.distances).enumerate() {
+            let [x, y] = [i % 40, i / 40].map(|n| (n as f64 + 0.5) / 10.0 - 2.0);
+            let height = (1.0 - x * x - y * y).max(0.0).sqrt();
+            match height {
+                height if x < 0.1 || height < 0.2 => assert!(distance.is_infinite()),
+                height if height > 0.5 => {
+                    assert!((distance - 8.5).abs() < 1e-12, "{distance}");
+                    let wanted = 0.5 * facing + SPECULAR;
+                    assert!((f64::from(pixel[0]) - wanted).abs() < 1e-6);
+                    cut += 1;
+                }
+                height => {
+                    assert!((distance - (9.0 - height)).abs() < 1e-12, "{distance}");
+                    cap += 1;
+                }
+            }
+        }
+        assert!(cut > 80 && cap > 10, "{cut} and {cap} pixels");
     }
 
     #[test]

@@ -7,20 +7,23 @@ use crate::resident::GpuTransfer;
 use crate::scene::Scene;
 use crate::technique::cost::ms_of_fetches;
 use crate::technique::{
-    ClipPlane, Filter, GpuChannel, GradientFilter, Inputs, LightPlan, LightVolume, Skip,
-    parameter_ring,
+    ClipPlane, Filter, GpuChannel, GradientFilter, Inputs, LightPlan, LightVolume, Mode, Recording,
+    Role, SampleInputs, Skip, View, parameter_ring,
 };
 use crate::transfer::TransferFunction;
+use crate::volume::Volume;
 use glam::DVec3;
 use std::sync::Arc;
 
 /// A number from a buffer and a multiplication.
 const LOOKS_OF_A_PIECE: f64 = 0.1;
 
-/// What light is followed through, of one volume.
+/// What light is followed through.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Matter {
-    function: TransferFunction,
+    functions: Vec<TransferFunction>,
+    roles: Vec<Role>,
+    dim: f64,
     filter: Filter,
     gradient_filter: GradientFilter,
     crop: Option<[DVec3; 2]>,
@@ -28,11 +31,13 @@ pub struct Matter {
 }
 
 impl Matter {
-    /// That of a scene, by the function that classifies it.
-    pub fn of(scene: &Scene, function: &TransferFunction) -> Self {
+    /// That of a scene, by the functions that classify it.
+    pub fn of(scene: &Scene, functions: &[&TransferFunction]) -> Self {
         let settings = scene.settings;
         Self {
-            function: function.clone(),
+            functions: functions.iter().copied().cloned().collect(),
+            roles: scene.roles(),
+            dim: settings.dim,
             filter: settings.filter,
             gradient_filter: settings.gradient_filter,
             crop: settings.crop,
@@ -41,7 +46,29 @@ impl Matter {
     }
 }
 
-/// Makes it and waits for it.
+/// The light volume of a scene in such a view; `None` where its picture reads none.
+pub fn light_plan_of(
+    scene: &Scene,
+    view: &View,
+) -> Result<Option<LightPlan>, crate::technique::Error> {
+    let mut plan = view.light_plan()?;
+    if let Some(plan) = &mut plan {
+        for volume in matter_volumes(scene) {
+            plan.look_at(view.grid, &volume.grid());
+        }
+    }
+    Ok(plan)
+}
+
+/// The volumes that are in the way of light: all that are seen together, but what colours surfaces.
+pub fn matter_volumes<'a>(scene: &Scene<'a>) -> Vec<&'a Volume> {
+    match scene.settings.mode {
+        Mode::Iso => vec![scene.volume],
+        _ => scene.volumes(),
+    }
+}
+
+/// Makes it of these volumes of the scene, and waits for it.
 pub fn made_light(
     device: &mut Headless,
     slices: &mut TimeSlices,
@@ -51,18 +78,26 @@ pub fn made_light(
     transfer: Option<&GpuTransfer>,
 ) -> Result<LightVolume, Error> {
     let gpu = Arc::clone(device.gpu());
+    let mix = match parts {
+        [_] => SampleInputs::Scalar,
+        _ => scene.mix(),
+    };
     let grid = scene.volume.grid();
     let recordings = scene.view(&grid, [0.0; 2]).recordings_of(parts, transfer)?;
     let volume = parts[0].volume;
-    let light = LightVolume::new(&gpu, plan, scene.settings, volume)?;
+    let light = LightVolume::mixed(&gpu, plan, scene.settings, mix, parts)?;
     let ring = parameter_ring(&gpu, recordings.len() as u32)?;
-    let one = |(slot, recording): (u32, &crate::technique::Recording)| {
+    let one = |(slot, recording): (u32, &Recording)| {
+        let others = parts[1..].iter();
+        let beside: Vec<_> = others
+            .map(|part| &part.volume.bricks()[recording.brick])
+            .collect();
         let inputs = Inputs {
             ring: &ring,
             volume,
             brick: &volume.bricks()[recording.brick],
             transfer,
-            beside: &[],
+            beside: &beside,
             light: None,
             points: None,
             sky: None,
@@ -75,7 +110,8 @@ pub fn made_light(
     let bricks = || bound.iter().map(|(bindings, offset)| (bindings, *offset));
     let plan = light.plan();
     let of_cell: u32 = plan.looks.iter().product();
-    let of_cells = plan.cell_count() as f64 * f64::from(of_cell) * bound.len() as f64;
+    let of_cells =
+        plan.cell_count() as f64 * f64::from(of_cell) * (bound.len() * parts.len()) as f64;
     // Pieces of paths, of which most end where nothing comes through or outside.
     let of_node = LOOKS_OF_A_PIECE * plan.paths.len() as f64 / f64::from(plan.bundle_count.max(1));
     let of_nodes = plan.node_count() as f64 * of_node;

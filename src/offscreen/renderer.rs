@@ -331,11 +331,13 @@ impl<'v> Renderer<'v> {
         self.prepare_skip(scene)?;
         let functions = scene.transfers().into_iter();
         match functions.collect::<Option<Vec<_>>>() {
-            _ if scene.settings.mode == Mode::Iso => match scene.transfers().get(1) {
+            _ if scene.settings.mode == Mode::Iso => {
+                self.prepare_light(scene)?;
                 // What colours the surfaces.
-                Some(&Some(function)) => self.set_transfers(scene, &[function])?,
-                _ => self.prepare_light(scene)?,
-            },
+                if let Some(&Some(function)) = scene.transfers().get(1) {
+                    self.set_transfers(scene, &[function])?;
+                }
+            }
             Some(_) if !scene.settings.mode.is_projection() => self.prepare_light(scene)?,
             Some(functions) => self.set_transfers(scene, &functions)?,
             None if scene.settings.mode.is_projection() => {

@@ -191,11 +191,6 @@ pub enum Error {
         /// The mode.
         mode: Mode,
     },
-    /// Light is followed through one volume.
-    #[error(
-        "ambient occlusion and shadows are for one volume of numbers, not for several that are seen together"
-    )]
-    NotOccludedTogether,
     /// A projected value has no gradient.
     #[error(
         "mode {mode} projects one number a ray, which has no gradient: widgets and gradient opacity are for composite"

@@ -166,6 +166,8 @@ pub struct ShaderVariant {
     pub has_own_grids: bool,
     /// Whether light falls on what a constant lights: volumes that are mixed, slabs, samples between slices.
     pub is_lit: bool,
+    /// Whether matter is in the way of light that falls on volumes that are mixed.
+    pub is_hindered: bool,
     /// Rays leave what lies beside the picture: depth, value, samples, and what bricks behind go on with.
     pub writes_layers: bool,
 }
@@ -265,6 +267,9 @@ impl ShaderVariant {
                 .iter()
                 .any(|part| part.volume.grid() != parts[0].volume.grid()),
             is_lit: is_lit && (!mix.is_of_one() || !is_point) && settings.mode == Mode::Composite,
+            is_hindered: !mix.is_of_one()
+                && settings.wants_light_volume()
+                && settings.mode == Mode::Composite,
             writes_layers: true,
         }
     }
@@ -284,11 +289,13 @@ impl ShaderVariant {
 
     /// The parts of a shader's name that say whether light falls by a constant, and whether grids are shared.
     pub(super) fn light_and_grids(&self) -> &'static str {
-        match (self.is_lit, self.has_own_grids) {
-            (false, false) => "",
-            (false, true) => ".own",
-            (true, false) => ".lit",
-            (true, true) => ".lit.own",
+        match (self.is_hindered, self.is_lit, self.has_own_grids) {
+            (false, false, false) => "",
+            (false, false, true) => ".own",
+            (false, true, false) => ".lit",
+            (false, true, true) => ".lit.own",
+            (true, _, false) => ".hindered",
+            (true, _, true) => ".hindered.own",
         }
     }
 

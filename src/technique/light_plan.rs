@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! cells of an axis   min(voxels, 128), all of one size: none is smaller than a voxel
-//! looks at a cell    ceil(voxels of the cell) along each axis, at most 4
+//! looks at a cell    ceil(voxels of the cell) along each axis, at most 4; of several grids those of the finest
 //! occlusion          32 paths all around, from one cell to the radius
 //! shadow             8 paths over the disc of the light, from the node to the end of the grid
 //! ```
@@ -15,6 +15,7 @@ use super::light_paths::{all_around, path, towards};
 use super::{Error, Mode, View};
 use crate::shaders::{FrameFields, LightGrid, LightGridFields};
 use crate::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
+use crate::volume::Grid;
 use glam::DVec3;
 
 /// Darkness where little light comes in from all around.
@@ -46,6 +47,8 @@ pub enum Shadows {
 pub const MAX_LIGHT_CELLS: u32 = 128;
 /// Cells along a radius of occlusion, at most: farther away there is no end of the work.
 pub const MAX_RADIUS_CELLS: f64 = 64.0;
+/// Voxels that a product of matrices may be off by.
+const ROUNDING: f64 = 1e-6;
 /// Looks at a cell along an axis, at most.
 const MAX_LOOKS: u32 = 4;
 /// Part of the diagonal of the grid box.
@@ -87,6 +90,17 @@ impl LightPlan {
             looks: cell_voxels.map(|n| (n.ceil() as u32).clamp(1, MAX_LOOKS)),
             bundle_count: 0,
             paths: Vec::new(),
+        }
+    }
+
+    /// Looks as often as the voxels of another grid ask for, which matter on `first` is seen together with: nothing of a
+    /// finer grid is passed over.
+    pub(crate) fn look_at(&mut self, first: &Grid, other: &Grid) {
+        let own = other.world_from_voxel.inverse() * first.world_from_voxel;
+        for (k, looks) in self.looks.iter_mut().enumerate() {
+            let side = own.matrix3.col(k) * self.cell_voxels[k];
+            let voxels = (side.abs().max_element() - ROUNDING).ceil();
+            *looks = (*looks).max((voxels as u32).min(MAX_LOOKS));
         }
     }
 
@@ -297,5 +311,44 @@ impl super::Settings {
         let size = self.shadow_size().unwrap_or(0.0);
         let is_angle = (0.0..=90.0).contains(&size);
         Error::unless(is_angle, "the size of lights", "0 to 90 degrees", size)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{DAffine3, DMat3, dvec3};
+
+    #[test]
+    fn cells_are_looked_at_as_often_as_the_finest_grid_has_voxels_there() {
+        let sheared = DMat3::from_cols(
+            dvec3(1.1, 0.2, -0.1),
+            dvec3(-0.3, 0.9, 0.2),
+            dvec3(0.1, 0.3, 1.6),
+        );
+        let grid = |matrix3, dims| Grid {
+            dims,
+            world_from_voxel: DAffine3::from_mat3_translation(matrix3, dvec3(25.0, -8.0, 1e3)),
+        };
+        let first = grid(sheared, [9, 8, 7]);
+        let finer = |factors: [f64; 3]| {
+            let scale = DMat3::from_diagonal(dvec3(factors[0], factors[1], factors[2]));
+            grid(sheared * scale.inverse(), [9, 8, 7])
+        };
+        let looks = |other: &Grid| {
+            let mut plan = LightPlan {
+                cells: first.dims,
+                cell_voxels: [1.0; 3],
+                cell_length: 1.0,
+                looks: [1; 3],
+                bundle_count: 0,
+                paths: Vec::new(),
+            };
+            plan.look_at(&first, other);
+            plan.looks
+        };
+        assert_eq!(looks(&first), [1; 3], "no more than for one volume");
+        assert_eq!(looks(&finer([2.0, 1.0, 3.0])), [2, 1, 3]);
+        assert_eq!(looks(&finer([0.4, 1.5, 90.0])), [1, 2, 4], "at most four");
     }
 }

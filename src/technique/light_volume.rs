@@ -9,7 +9,7 @@
 //!     Inputs { light: Some(&light), .. }       techniques read it
 //! ```
 
-use super::{Filter, Inputs, LightPlan, Settings};
+use super::{Filter, GpuChannel, Inputs, LightPlan, SampleInputs, Settings};
 use crate::gpu::{
     Bindings, Buffer, ComputePipeline, Error, Gpu, Memory, ParameterRing, Resource, Use, barriers,
     buffer_barrier, group_count, within,
@@ -46,17 +46,25 @@ impl LightVolume {
         settings: &Settings,
         volume: &GpuVolume,
     ) -> Result<Self, Error> {
-        let layout = match volume.layout() {
-            TextureLayout::Texture3d => "box",
-            TextureLayout::Stack(_) => "stack",
-        };
-        // Cells average voxels anyway: no need to look between them, unless they are coefficients.
-        let filter = match settings.filter {
-            Filter::Nearest | Filter::Linear => "nearest",
-            _ => "kernel",
-        };
-        let holes = if volume.has_holes() { "mask" } else { "none" };
-        let name = format!("light_cells.{layout}.{filter}.{holes}.points");
+        let parts = [GpuChannel::numbers(volume)];
+        Self::mixed(gpu, plan, settings, SampleInputs::Scalar, &parts)
+    }
+
+    /// The same for pictures of several volumes, `parts`, that go together as `mix` says.
+    ///
+    /// # Errors
+    /// As [`LightVolume::new`].
+    ///
+    /// # Panics
+    /// Where `parts` is empty.
+    pub fn mixed(
+        gpu: &Arc<Gpu>,
+        plan: LightPlan,
+        settings: &Settings,
+        mix: SampleInputs,
+        parts: &[GpuChannel],
+    ) -> Result<Self, Error> {
+        let name = name_of_cells(settings, mix, parts);
         let of_nodes = ComputePipeline::new(gpu, shader("light_volume"))?;
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
         let buffer =
@@ -99,7 +107,7 @@ impl LightVolume {
         &self.volume
     }
 
-    /// Binds the matter of one brick: a volume and its transfer function.
+    /// Binds the matter of one brick: a volume and its transfer function, or several.
     ///
     /// # Errors
     /// Where an input is missing.
@@ -207,4 +215,29 @@ impl LightVolume {
         }
         Ok(())
     }
+}
+
+/// The shader that looks at the cells.
+fn name_of_cells(settings: &Settings, mix: SampleInputs, parts: &[GpuChannel]) -> String {
+    let first = parts[0].volume;
+    let layout = match first.layout() {
+        TextureLayout::Texture3d => "box",
+        TextureLayout::Stack(_) => "stack",
+    };
+    let has_own_grids = parts.iter().any(|p| p.volume.grid() != first.grid());
+    // Cells average voxels anyway: no need to look between them, unless they are coefficients or lie elsewhere.
+    let filter = match settings.filter {
+        Filter::Linear if has_own_grids => "linear_fetch",
+        Filter::Nearest | Filter::Linear => "nearest",
+        _ => "kernel",
+    };
+    let has_holes = parts.iter().any(|part| part.volume.has_holes());
+    let holes = if has_holes { "mask" } else { "none" };
+    let matter = match mix {
+        SampleInputs::Channels => ".of_channels",
+        SampleInputs::Colors => ".of_colors",
+        _ => "",
+    };
+    let grids = if has_own_grids { ".own" } else { "" };
+    format!("light_cells.{layout}.{filter}.{holes}.points{matter}{grids}")
 }

@@ -39,13 +39,10 @@ impl Settings {
     /// Whether light can fall on several volumes.
     ///
     /// # Errors
-    /// [`Error::NotShadedTogether`], [`Error::NotOccludedTogether`] and [`Error::NotFor`].
+    /// [`Error::NotShadedTogether`] and [`Error::NotFor`].
     pub(crate) fn check_lit_mixture(&self) -> Result<(), Error> {
         if self.is_half_angle() {
             return Err(Error::NotShadedTogether);
-        }
-        if self.wants_light_volume() {
-            return Err(Error::NotOccludedTogether);
         }
         let is_other = self.gradient_operator() != Operator::Central
             || self.gradient_storage == GradientStorage::Precomputed;

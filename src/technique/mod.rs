@@ -205,6 +205,17 @@ pub struct ClipPlane {
     pub offset: f64,
 }
 
+impl ClipPlane {
+    /// Its unit normal and the offset that belongs to it; a normal of length 0 keeps what it kept.
+    pub(crate) fn unit(&self) -> (glam::DVec3, f64) {
+        let length = self.normal.length();
+        match length > 0.0 {
+            true => (self.normal / length, self.offset / length),
+            false => (self.normal, self.offset),
+        }
+    }
+}
+
 /// How a cut through the volume looks. It is not lit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CutFaces {
@@ -266,13 +277,13 @@ pub struct Settings {
     pub clip_planes: Vec<ClipPlane>,
     /// Composite by rays: what the crop box and the clip planes lay bare is an opaque cross-section.
     pub cut_faces: Option<CutFaces>,
-    /// Light on composited samples of one volume; `None`: their colour as it is.
+    /// Light on composited samples; `None`: their colour as it is.
     pub shading: Option<Shading>,
     /// How gradients are made, for light and for transfer functions of gradients.
     pub gradient_filter: GradientFilter,
     /// Whether they are made for each sample, or kept at the voxels.
     pub gradient_storage: GradientStorage,
-    /// Ambient light that matter nearby takes away, with lights or without, of one volume that is composited.
+    /// Ambient light that matter nearby takes away, with lights or without, of what is composited.
     pub ambient_occlusion: Option<AmbientOcclusion>,
     /// Float targets, no early termination, filtering by texel fetch, control points searched exactly.
     pub conformance: bool,

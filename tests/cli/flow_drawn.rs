@@ -4,16 +4,16 @@ use crate::person::Folder;
 use crate::real::data;
 use std::fs;
 
-const STORM: &str = "phantom:storm,n=16";
-const SIDE: usize = 60;
+pub const STORM: &str = "phantom:storm,n=16";
+pub const SIDE: usize = 60;
 /// A pixel a unit of the world.
-const VIEW: &str =
+pub const VIEW: &str =
     "--target 0,0,0 --projection orthographic --view-height 60 --size 60x60 --background none";
 const ABOVE: &str = "--eye 0,0,100 --up 0,1,0";
 const SOUTH: &str = "--eye 0,-100,0 --up 0,0,1";
 
 /// The numbers of a picture.
-fn picture(folder: &Folder, words: &str) -> Vec<[f32; 4]> {
+pub fn picture(folder: &Folder, words: &str) -> Vec<[f32; 4]> {
     let ran = folder.run(&format!("render {STORM} {words} -o a.npy --force"));
     ran.assert_done();
     let bytes = fs::read(folder.path("a.npy")).expect("a picture");
@@ -24,7 +24,7 @@ fn picture(folder: &Folder, words: &str) -> Vec<[f32; 4]> {
 }
 
 /// Places of the vertices that `convert` writes.
-fn places(folder: &Folder, words: &str) -> Vec<[f64; 3]> {
+pub fn places(folder: &Folder, words: &str) -> Vec<[f64; 3]> {
     folder
         .run(&format!("convert {STORM} {words} -o l.csv --force"))
         .assert_done();
@@ -174,7 +174,6 @@ fn what_lines_cannot_be_drawn_with_is_refused_by_name() {
     for (words, wanted) in [
         ("--technique slices-3d", "--technique raycast"),
         ("--aa 4 --aa-uneven", "--aa-uneven"),
-        ("--section axial", "--section"),
         ("--device reference", "--device reference"),
         ("--hide-volume --mode mip", "--hide-volume"),
         ("--flow-width 0.5", "1.2 to 1000"),
@@ -242,7 +241,7 @@ fn one_word_stands_for_the_flags_that_it_says() {
         .assert_refused(2, &["--show", "temperature"]);
 }
 
-fn fixture(name: &str) -> String {
+pub fn fixture(name: &str) -> String {
     format!(
         "{}/tests/fixtures/netcdf/{name}",
         env!("CARGO_MANIFEST_DIR")

@@ -31,6 +31,7 @@ mod examples;
 mod figures;
 mod flow;
 mod flow_drawn;
+mod flow_sections;
 mod info;
 mod info_structure;
 #[cfg(unix)]
@@ -54,6 +55,7 @@ mod points;
 mod presets;
 mod real;
 mod section;
+mod section_at;
 mod sheet;
 mod spheres;
 mod thumbnail_views;

@@ -3,15 +3,15 @@
 use crate::person::Folder;
 use std::fs;
 
-const SIDE: usize = 5;
+pub const SIDE: usize = 5;
 
 /// A number that tells every voxel from its neighbours on all sides.
-fn value([x, y, z]: [usize; 3]) -> f32 {
+pub fn value([x, y, z]: [usize; 3]) -> f32 {
     (x + 10 * y + 100 * z) as f32
 }
 
 /// 5 x 5 x 5 voxels of size 1, world from 0 to 5.
-fn volume(folder: &Folder) {
+pub fn volume(folder: &Folder) {
     let mut bytes =
         b"NRRD0004\ntype: float\ndimension: 3\nsizes: 5 5 5\nendian: little\nencoding: raw\n\
         space: RAS\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0.5,0.5,0.5)\n\n"
@@ -27,7 +27,7 @@ fn volume(folder: &Folder) {
 }
 
 /// The layer `value` of a picture of 5 x 5 pixels, one a voxel.
-fn values(folder: &Folder, words: &str) -> Vec<f32> {
+pub fn values(folder: &Folder, words: &str) -> Vec<f32> {
     let fixed = "-o a.npy --aov value --size 5x5 --force";
     folder
         .run(&format!("render v.nrrd {fixed} {words}"))
@@ -39,7 +39,7 @@ fn values(folder: &Folder, words: &str) -> Vec<f32> {
 }
 
 /// What is seen at column x, row y (down) of each cut.
-fn seen(section: &str, [x, y]: [usize; 2], depth: usize) -> [usize; 3] {
+pub fn seen(section: &str, [x, y]: [usize; 2], depth: usize) -> [usize; 3] {
     let (across, up) = (SIDE - 1 - x, SIDE - 1 - y);
     match section {
         // From below, anterior up: the patient's right, +x, on the left.
@@ -201,7 +201,7 @@ fn a_clip_box_is_six_clip_planes_and_its_faces_are_seen() {
 }
 
 /// The numbers of a picture.
-fn picture(folder: &Folder, words: &str, [width, height]: [usize; 2]) -> Vec<[f32; 4]> {
+pub fn picture(folder: &Folder, words: &str, [width, height]: [usize; 2]) -> Vec<[f32; 4]> {
     let fixed = format!("-o a.npy --size {width}x{height} --force");
     let ran = folder.run(&format!("render v.nrrd {fixed} {words}"));
     ran.assert_done();

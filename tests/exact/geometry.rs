@@ -8,7 +8,7 @@ use stratavox::geometry::{RoundCones, Vertex};
 use stratavox::offscreen::{Renderer, check_geometry};
 use stratavox::picture::ColorSpace;
 use stratavox::scene::{Beside, Scene};
-use stratavox::technique::{Mode, Settings, Technique};
+use stratavox::technique::{ClipPlane, Mode, Settings, Technique};
 use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
 use stratavox::volume::Volume;
 
@@ -64,21 +64,45 @@ fn cameras() -> [Camera; 2] {
     ]
 }
 
-/// Where the ray enters the box and where it leaves.
-fn interval(origin: DVec3, direction: DVec3) -> Option<[f64; 2]> {
+/// Where the ray enters what planes that face it leave of the box, and where it leaves it.
+fn interval(origin: DVec3, direction: DVec3, planes: &[ClipPlane]) -> Option<[f64; 2]> {
     let [a, b] = [0.0, SIDE].map(|side| (DVec3::splat(side) - origin) / direction);
-    let (enter, leave) = (a.min(b).max_element(), a.max(b).min_element());
+    let (mut enter, leave) = (a.min(b).max_element(), a.max(b).min_element());
+    for ClipPlane { normal, offset } in planes {
+        assert!(normal.dot(direction) > 0.0);
+        enter = enter.max((offset - normal.dot(origin)) / normal.dot(direction));
+    }
     (enter < leave).then_some([enter, leave])
 }
 
 #[test]
 fn fog_before_geometry_is_as_thick_as_it_is_deep() {
+    assert_fog_before_geometry(&[], 60);
+}
+
+#[test]
+fn clip_planes_cut_geometry_as_they_cut_the_fog() {
+    // Through the tube, at an angle, and before the sphere that is nearer.
+    let normal = dvec3(0.4, 0.2, -2.0);
+    let offset = normal.dot(dvec3(2.0, 4.0, 3.5));
+    assert_fog_before_geometry(&[ClipPlane { normal, offset }], 12);
+}
+
+fn assert_fog_before_geometry(planes: &[ClipPlane], least_hidden: usize) {
     let (volume, function) = fog();
     let cones = cones();
+    let units: Vec<_> = planes
+        .iter()
+        .map(|plane| {
+            let length = plane.normal.length();
+            (plane.normal / length, plane.offset / length)
+        })
+        .collect();
     for camera in cameras() {
         for rays_per_side in [1, 2] {
             let settings = Settings {
                 rays_per_side,
+                clip_planes: planes.to_vec(),
                 color_space: ColorSpace::Linear,
                 samples_per_voxel: 4.0,
                 ..Settings::default()
@@ -112,11 +136,11 @@ fn fog_before_geometry_is_as_thick_as_it_is_deep() {
                 .iter()
                 .flat_map(|&dy| offsets.iter().map(move |&dx| (dx, dy)))
             {
-                let seen = cones.seen(&camera, EXTENT, [dx, dy]);
+                let seen = cones.seen_cut(&camera, EXTENT, [dx, dy], &units);
                 for (i, wanted) in wanted.iter_mut().enumerate() {
                     let [x, y] = [i % EXTENT[0] as usize, i / EXTENT[0] as usize];
                     let (origin, direction) = rays.at(x as f64 + 0.5 + dx, y as f64 + 0.5 + dy);
-                    let [enter, leave] = interval(origin, direction).unwrap_or([0.0; 2]);
+                    let [enter, leave] = interval(origin, direction, planes).unwrap_or([0.0; 2]);
                     let length = (leave.min(seen.distances[i]) - enter).max(0.0);
                     hidden += usize::from(seen.distances[i] < leave && length > 0.5);
                     let alpha = 1.0 - (-EXTINCTION * length).exp();
@@ -127,7 +151,7 @@ fn fog_before_geometry_is_as_thick_as_it_is_deep() {
                     }
                 }
             }
-            assert!(hidden > 60, "{hidden} rays end inside of the fog");
+            assert!(hidden > least_hidden, "{hidden} rays end inside of the fog");
             for (i, (found, wanted)) in found.pixels.iter().zip(&wanted).enumerate() {
                 for c in 0..4 {
                     // The depth of f32 (22 of 1e-7) and the last part of a step, in fog of at most 1.6 depths.

@@ -1,6 +1,7 @@
 //! Several volumes on one grid: each shader computes what its CPU reference computes, bricks change nothing, and a mixture
 //! is what independent emitters and absorbers in one place are.
 
+mod hindered;
 mod labels_over;
 mod opacity;
 mod own_grids;

@@ -276,7 +276,7 @@ fn lights() -> Vec<Light> {
 }
 
 /// Occlusion, shadows, and both with everything that light is cut by.
-fn dim(settings: &mut Settings, turn: usize) {
+pub fn dim(settings: &mut Settings, turn: usize) {
     let shading = Shading {
         ambient: 0.6,
         lights: lights(),
@@ -444,7 +444,29 @@ fn ball_over_floor(p: DVec3) -> f64 {
     f64::from(is_ball || p.z < 5.0)
 }
 
-fn seen_from_above(volume: &Volume, change: impl FnOnce(&mut Settings)) -> Picture {
+/// White above 0.5.
+fn white() -> TransferFunction {
+    TransferFunction {
+        color: vec![ColorPoint {
+            value: 0.0,
+            srgb: [1.0; 3],
+        }],
+        opacity: [(0.5, 0.0), (0.5, 1.0)]
+            .map(|(value, opacity)| OpacityPoint { value, opacity })
+            .to_vec(),
+        reference_length: None,
+        interpolation: Interpolation::Linear,
+        gradient_transfer: None,
+    }
+}
+
+/// A pixel a voxel, nearest, against the last axis.
+pub fn seen_from_above(
+    volume: &Volume,
+    transfer: &TransferFunction,
+    beside: Beside,
+    change: impl FnOnce(&mut Settings),
+) -> Picture {
     let mut settings = shadows(&[dvec3(0.5, 0.0, 1.0)], 0.0);
     settings.color_space = ColorSpace::Display;
     settings.filter = Filter::Nearest;
@@ -457,28 +479,20 @@ fn seen_from_above(volume: &Volume, change: impl FnOnce(&mut Settings)) -> Pictu
         projection: Projection::Orthographic { view_height: 24.0 },
         zoom: 1.0,
     };
-    let white = TransferFunction {
-        color: vec![ColorPoint {
-            value: 0.0,
-            srgb: [1.0; 3],
-        }],
-        opacity: [(0.5, 0.0), (0.5, 1.0)]
-            .map(|(value, opacity)| OpacityPoint { value, opacity })
-            .to_vec(),
-        reference_length: None,
-        interpolation: Interpolation::Linear,
-        gradient_transfer: None,
-    };
     let scene = Scene {
         volume,
-        transfer: Some(&white),
-        beside: Beside::Nothing,
+        transfer: Some(transfer),
+        beside,
         camera: &camera,
         extent_pixels: [24, 24],
         settings: &settings,
     };
-    let mut renderer = Renderer::new(device(), volume).unwrap();
+    let mut renderer = Renderer::several(device(), scene.volumes()).unwrap();
     renderer.render(&scene, &[]).unwrap().picture
+}
+
+fn balls_from_above(volume: &Volume, change: impl FnOnce(&mut Settings)) -> Picture {
+    seen_from_above(volume, &white(), Beside::Nothing, change)
 }
 
 /// The floor where the shadow of the ball falls: ten below it, five to the side.
@@ -490,13 +504,13 @@ fn in_shadow(picture: &Picture) -> f32 {
 fn what_is_cut_away_or_no_data_casts_no_shadow() {
     let volume = volume_of([24; 3], DAffine3::IDENTITY, ball_over_floor);
     let floor = volume_of([24; 3], DAffine3::IDENTITY, |p| f64::from(p.z < 5.0));
-    let bright = in_shadow(&seen_from_above(&floor, |_| ()));
-    let dark = in_shadow(&seen_from_above(&volume, |_| ()));
+    let bright = in_shadow(&balls_from_above(&floor, |_| ()));
+    let dark = in_shadow(&balls_from_above(&volume, |_| ()));
     assert!(
         dark < 0.3 * bright,
         "the ball casts a shadow: {dark} of {bright}"
     );
-    let clipped = seen_from_above(&volume, |settings| {
+    let clipped = balls_from_above(&volume, |settings| {
         let (normal, offset) = (DVec3::NEG_Z, -10.0);
         settings.clip_planes = vec![ClipPlane { normal, offset }];
     });
@@ -505,14 +519,14 @@ fn what_is_cut_away_or_no_data_casts_no_shadow() {
         bright,
         "a clip plane takes the ball away"
     );
-    let cropped = seen_from_above(&volume, |settings| {
+    let cropped = balls_from_above(&volume, |settings| {
         settings.crop = Some([DVec3::ZERO, dvec3(24.0, 24.0, 10.0)]);
     });
     assert_eq!(in_shadow(&cropped), bright, "a crop takes the ball away");
     let mut hollow = volume;
     let is_there = |i: u32| u8::from(i / (24 * 24) < 10);
     hollow.validity = Some((0..24 * 24 * 24).map(is_there).collect());
-    let hollow = seen_from_above(&hollow, |_| ());
+    let hollow = balls_from_above(&hollow, |_| ());
     assert_eq!(in_shadow(&hollow), bright, "a ball without data is none");
 }
 
@@ -626,17 +640,4 @@ fn what_has_no_light_to_take_is_refused_by_name() {
         settings.ambient_occlusion.as_mut().unwrap().strength = 1.5;
     });
     assert!(found.to_string().contains("strength"), "{found}");
-    let one = [volume.clone()];
-    let settings = shot.with(|settings| dim(settings, 0)).settings;
-    let channels = one.each_ref().map(|volume| stratavox::scene::Channel {
-        volume,
-        transfer: Some(&transfer),
-        role: Default::default(),
-    });
-    let mixed = Scene {
-        beside: Beside::Channels(&channels),
-        settings: &settings,
-        ..shot.scene(&volume, Some(&transfer))
-    };
-    assert_eq!(mixed.check(), Err(Error::NotOccludedTogether));
 }

@@ -53,7 +53,7 @@ impl SceneFlags {
             false => Look::Auto,
         });
         // Opaque edges at one ray a pixel look broken.
-        if self.has_lines() && self.is_auto() {
+        if self.has_lines() && self.is_auto() && !self.traces_paths() {
             self.sampling.aa.get_or_insert(4);
         }
     }

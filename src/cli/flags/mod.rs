@@ -34,6 +34,7 @@ mod points;
 mod sampling;
 mod sampling_numbers;
 mod section;
+mod section_words;
 mod shadows;
 mod subject;
 mod time;

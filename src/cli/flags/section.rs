@@ -4,6 +4,7 @@
 //! plane       n . (x - target) = 0,   the eye on the side of n, orthographic
 //! slab        |n . (x - target)| <= thickness / 2,   by two clip planes
 //! height      2 max(H_up, H_right height / width),   H_v = |v . (c - target)| + sum of |v . a_k|
+//! at p        e . x = p,   e the axis of the world that the plane stands across, or the normal as it was given
 //! i of N      n . (x - c) = H_n(c) (1 - (2 i - 1) / N),   H_n(c) = sum of |n . a_k|,   i = 1 the nearest to the eye
 //! ```
 //!
@@ -11,7 +12,10 @@
 //! the ray holds one sample a ray, at its middle: on the plane itself.
 
 use super::{
-    CameraFlags, Depth, Error, Numbers, SamplingFlags, Subject, camera::refused, positive,
+    CameraFlags, Depth, Error, Numbers, SamplingFlags, Subject,
+    camera::refused,
+    finite, positive,
+    section_words::{Cuts, MOST_CUTS, Place, Planes},
 };
 use crate::{
     camera::{Camera, Frame, Projection, up_for},
@@ -21,7 +25,6 @@ use crate::{
 use clap::Args;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
-use std::{fmt, str::FromStr};
 
 /// The flags, none of them filled in.
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -35,46 +38,16 @@ pub struct SectionFlags {
           conflicts_with_all = ["projection", "fov", "view", "azimuth", "elevation", "eye"])]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub section: Option<Planes>,
+    /// World positions of the cuts, one or several in one picture: of axial z, of coronal y, of sagittal x, of a normal N
+    /// along it, N.x / |N| [default: --target]
+    #[arg(long, value_name = "P,...", value_delimiter = ',', value_parser = finite, allow_hyphen_values = true,
+          requires = "section", help_heading = "Camera")]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub at: Vec<f64>,
     /// World thickness of the cut; --mode says what becomes of its values [default: one sample]
     #[arg(long, value_name = "T", value_parser = positive, requires = "section", help_heading = "Camera")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub thickness: Option<f64>,
-}
-
-/// The planes of `--section`, one or more.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "String", into = "String")]
-pub struct Planes(Vec<Cuts>);
-
-/// More have no room in a picture.
-const MOST_CUTS: u32 = 64;
-
-/// One word of `--section`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Cuts {
-    plane: Plane,
-    place: Place,
-}
-
-/// Where planes that face the same way lie.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Place {
-    /// One, through the target.
-    Target,
-    /// So many, evenly from end to end.
-    All(u32),
-    /// One of so many, counted from 1.
-    Nth(u32, u32),
-}
-
-/// The direction that a plane faces.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(missing_docs, reason = "the names say it")]
-enum Plane {
-    Axial,
-    Coronal,
-    Sagittal,
-    Normal(Numbers<3>),
 }
 
 /// A cut of no thickness is so thick, in smallest voxel spacings: less than any step, and more than f32 loses
@@ -84,6 +57,13 @@ const THINNEST: f64 = 0.01;
 impl SectionFlags {
     /// The same flags for each of the planes alone; none without a section.
     pub fn each(&self) -> Vec<Self> {
+        if !self.at.is_empty() {
+            let alone = |&position| Self {
+                at: vec![position],
+                ..self.clone()
+            };
+            return self.at.iter().map(alone).collect();
+        }
         let cuts = self.section.iter().flat_map(|planes| &planes.0);
         let alone = |cut: Cuts| Self {
             section: Some(Planes(vec![cut])),
@@ -94,10 +74,16 @@ impl SectionFlags {
 
     /// The plane, where there is one.
     fn cut(&self) -> Result<Option<Cuts>, Error> {
-        match self.section.as_ref().map(|planes| &planes.0[..]) {
-            None => Ok(None),
-            Some(&[cut]) if !matches!(cut.place, Place::All(_)) => Ok(Some(cut)),
-            Some(_) => Err(Error::usage(
+        let Some(planes) = &self.section else {
+            return Ok(None);
+        };
+        match (&planes.0[..], &self.at[..]) {
+            (&[cut], []) if !matches!(cut.place, Place::All(_)) => Ok(Some(cut)),
+            (&[cut], &[position]) => Ok(Some(Cuts {
+                place: Place::At(position),
+                ..cut
+            })),
+            _ => Err(Error::usage(
                 "--section of several planes makes one picture of them, and only `render` draws that",
                 "name one plane",
             )),
@@ -107,6 +93,7 @@ impl SectionFlags {
     /// What to compute: a cut is the mean over its thickness unless another mode is asked for.
     pub fn settings(&self, sampling: &SamplingFlags, depth: Depth) -> Result<Settings, Error> {
         let mut settings = sampling.settings(depth)?;
+        self.check_at()?;
         if self.section.is_none() {
             return Ok(settings);
         }
@@ -128,6 +115,26 @@ impl SectionFlags {
             ));
         }
         Ok(settings)
+    }
+
+    /// Whether the positions are those of planes that face one way, and not too many.
+    fn check_at(&self) -> Result<(), Error> {
+        let Some(planes) = self.section.as_ref().filter(|_| !self.at.is_empty()) else {
+            return Ok(());
+        };
+        let is_one = matches!(&planes.0[..], [cut] if cut.place == Place::Target);
+        let found = self.at.len();
+        match found > MOST_CUTS as usize {
+            _ if !is_one => Err(Error::usage(
+                format!("--at places planes that face one way, and --section says {planes}"),
+                "name one: --section axial --at 10,20,30",
+            )),
+            true => Err(Error::usage(
+                format!("--at: wanted at most {MOST_CUTS} planes, found {found}"),
+                "leave some out, or draw several pictures",
+            )),
+            false => Ok(()),
+        }
     }
 
     /// The error, naming `--section` where that chose the mode that is to blame: where `is_right` of the same words
@@ -174,10 +181,18 @@ impl SectionFlags {
         let center = subject.bounds.center;
         let normal = plane.normal(subject.is_earth)?;
         let mut target = camera.target.map_or(center, |Numbers(p)| p.into());
-        if let Place::Nth(nth, count) = place {
-            let share = 1.0 - f64::from(2 * nth - 1) / f64::from(count);
-            let along = (center - target).dot(normal) + share * subject.half_extent(normal);
-            target += along * normal;
+        match place {
+            Place::Nth(nth, count) => {
+                let share = 1.0 - f64::from(2 * nth - 1) / f64::from(count);
+                let along = (center - target).dot(normal) + share * subject.half_extent(normal);
+                target += along * normal;
+            }
+            Place::At(position) => {
+                let axis = plane.axis(subject.is_earth)?;
+                self.check_position(position, axis, subject)?;
+                target += (position - target.dot(axis)) * axis;
+            }
+            Place::Target | Place::All(_) => {}
         }
         let up = camera
             .up
@@ -227,164 +242,33 @@ impl SectionFlags {
             ..rolled
         })
     }
-}
 
-impl Plane {
-    /// The unit vector towards the eye. Radiologists look so that the patient's right is left in the picture; maps of
-    /// the Earth have the east on the right.
-    fn normal(self, is_earth: bool) -> Result<DVec3, Error> {
-        match self {
-            Self::Axial if is_earth => Ok(DVec3::Z),
-            Self::Coronal if is_earth => Ok(DVec3::NEG_Y),
-            Self::Axial => Ok(DVec3::NEG_Z),
-            Self::Coronal => Ok(DVec3::Y),
-            Self::Sagittal => Ok(DVec3::NEG_X),
-            Self::Normal(Numbers(normal)) => DVec3::from(normal).try_normalize().ok_or_else(|| {
-                Error::usage(
-                    "--section 0,0,0: a plane needs a direction",
-                    "--section 0,0,1 is seen from above",
-                )
-            }),
+    /// World length from the planes to either side of their slabs, 0 for one sample; `None` without a section.
+    pub fn half_thickness(&self) -> Option<f64> {
+        let thickness = self.thickness.unwrap_or(0.0);
+        self.section.is_some().then_some(0.5 * thickness)
+    }
+
+    /// Whether a slab at this position along `axis` holds anything of the volume.
+    fn check_position(&self, position: f64, axis: DVec3, subject: &Subject) -> Result<(), Error> {
+        let (middle, half) = (subject.bounds.center.dot(axis), subject.half_extent(axis));
+        if (position - middle).abs() <= half + self.half_thickness().unwrap_or(0.0) {
+            return Ok(());
         }
+        Err(Error::usage(
+            format!(
+                "--at {position}: the volume lies from {} to {} there",
+                rounded(middle - half),
+                rounded(middle + half)
+            ),
+            "`stratavox info INPUT` says where the volume lies in the world",
+        ))
     }
 }
 
-impl FromStr for Planes {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        // A normal has commas of its own.
-        let words: Result<Vec<Cuts>, String> = match text.parse() {
-            Ok(cuts) => Ok(vec![cuts]),
-            Err(problem) if text.contains(',') => {
-                let all: Result<_, String> = text.split(',').map(str::parse).collect();
-                all.map_err(|_| problem)
-            }
-            Err(problem) => Err(problem),
-        };
-        let words = words?;
-        let count = words.iter().map(|cuts| cuts.count()).sum::<u32>();
-        if count > MOST_CUTS {
-            return Err(format!("wanted at most {MOST_CUTS} planes, found {count}"));
-        }
-        Ok(Self(words))
-    }
-}
-
-impl Cuts {
-    fn count(self) -> u32 {
-        match self.place {
-            Place::Target | Place::Nth(..) => 1,
-            Place::All(count) => count,
-        }
-    }
-
-    /// Each plane by itself.
-    fn each(self) -> Vec<Self> {
-        match self.place {
-            Place::Target | Place::Nth(..) => vec![self],
-            Place::All(count) => {
-                let nth = |nth| Self {
-                    place: Place::Nth(nth, count),
-                    ..self
-                };
-                (1..=count).map(nth).collect()
-            }
-        }
-    }
-}
-
-impl FromStr for Cuts {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        const WANTED: &str = "wanted axial, coronal, sagittal, several of them with commas between, or the normal NX,NY,NZ of a \
-            plane; axial:12 for twelve, axial:3/12 for the third of them";
-        let (plane, place) = match text.split_once(':') {
-            None => (text, Some(Place::Target)),
-            Some((plane, place)) => (plane, place_of(place)),
-        };
-        Ok(Self {
-            plane: plane.parse().map_err(|_| WANTED.to_owned())?,
-            place: place.ok_or_else(|| WANTED.to_owned())?,
-        })
-    }
-}
-
-/// `12` or `3/12`.
-fn place_of(text: &str) -> Option<Place> {
-    let number = |text: &str| text.parse().ok().filter(|n| (1..=MOST_CUTS).contains(n));
-    match text.split_once('/') {
-        // More than there may be is said with their sum.
-        None => text
-            .parse()
-            .ok()
-            .filter(|&n| n > 0 && n < 1 << 16)
-            .map(Place::All),
-        Some((nth, count)) => {
-            let (nth, count) = (number(nth)?, number(count)?);
-            (nth <= count).then_some(Place::Nth(nth, count))
-        }
-    }
-}
-
-impl fmt::Display for Cuts {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.plane.fmt(f)?;
-        match self.place {
-            Place::Target => Ok(()),
-            Place::All(count) => write!(f, ":{count}"),
-            Place::Nth(nth, count) => write!(f, ":{nth}/{count}"),
-        }
-    }
-}
-
-impl fmt::Display for Planes {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, cuts) in self.0.iter().enumerate() {
-            let comma = if i > 0 { "," } else { "" };
-            write!(f, "{comma}{cuts}")?;
-        }
-        Ok(())
-    }
-}
-
-impl FromStr for Plane {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text {
-            "axial" => Ok(Self::Axial),
-            "coronal" => Ok(Self::Coronal),
-            "sagittal" => Ok(Self::Sagittal),
-            _ => text.parse().map(Self::Normal),
-        }
-    }
-}
-
-impl fmt::Display for Plane {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Axial => f.write_str("axial"),
-            Self::Coronal => f.write_str("coronal"),
-            Self::Sagittal => f.write_str("sagittal"),
-            Self::Normal(normal) => normal.fmt(f),
-        }
-    }
-}
-
-impl TryFrom<String> for Planes {
-    type Error = String;
-
-    fn try_from(text: String) -> Result<Self, String> {
-        text.parse()
-    }
-}
-
-impl From<Planes> for String {
-    fn from(planes: Planes) -> Self {
-        planes.to_string()
-    }
+/// To what a person reads.
+fn rounded(number: f64) -> f64 {
+    (1e3 * number).round() / 1e3
 }
 
 #[cfg(test)]
@@ -411,7 +295,7 @@ mod tests {
         let mut camera = CameraFlags::default();
         let mut section = SectionFlags {
             section: Some(word.parse().expect("a plane")),
-            thickness: None,
+            ..SectionFlags::default()
         };
         change(&mut camera, &mut section);
         let sampling = SamplingFlags::default();
@@ -457,7 +341,7 @@ mod tests {
         for (word, up) in [("axial", DVec3::Y), ("coronal", DVec3::Z)] {
             let section = SectionFlags {
                 section: Some(word.parse().expect("a plane")),
-                thickness: None,
+                ..SectionFlags::default()
             };
             let (camera, mut settings) = (CameraFlags::default(), Settings::default());
             let camera = section.camera(&camera, &subject, [300, 200], &mut settings);
@@ -484,7 +368,7 @@ mod tests {
     fn what_goes_against_a_section_is_refused() {
         let section = SectionFlags {
             section: Some("axial".parse().expect("a plane")),
-            thickness: None,
+            ..SectionFlags::default()
         };
         let turned = CameraFlags {
             azimuth: Some(20.0),

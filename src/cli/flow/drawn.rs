@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! radius = width / 2 pixels where the camera is turned to
+//! map    at sea level; on a level section of the Earth at the face of the slab that is seen
 //! head   a round cone from 2.8 radii to none, 10 radii long, every 60 pixels
 //! ```
 
@@ -28,6 +29,8 @@ const WIDTH: f64 = 3.0;
 const APART_PIXELS: f64 = 60.0;
 const HEAD_RADII: f64 = 2.8;
 const HEAD_LENGTH_RADII: f64 = 10.0;
+/// A direction that differs by less from straight down looks straight down.
+const LEVEL: f64 = 1e-9;
 
 /// Lines in the drawn world: of a wind, of the Earth.
 #[derive(Clone, Debug, Default)]
@@ -49,6 +52,8 @@ struct LineSet {
     /// Of each line, where they differ: how wide it is of that.
     shares: Option<Vec<f64>>,
     has_heads: bool,
+    /// Of the map, in a section: half of its world thickness.
+    on_section: Option<f64>,
 }
 
 /// Pixels across a sphere of the largest value, and what the smallest has of it.
@@ -82,6 +87,7 @@ impl DrawnLines {
             width_pixels: pixels.unwrap_or(SPHERE_PIXELS),
             shares: Some(kept().map(|(_, value)| share(value)).collect()),
             has_heads: false,
+            on_section: None,
         };
         Self {
             sets: vec![set],
@@ -122,6 +128,7 @@ impl DrawnLines {
                     width_pixels: line.width,
                     shares: None,
                     has_heads: false,
+                    on_section: scene.section.half_thickness(),
                 });
             }
         }
@@ -181,6 +188,7 @@ impl DrawnLines {
             width_pixels: style.flow_width.unwrap_or(WIDTH),
             shares: None,
             has_heads: look == StyleWord::Arrows,
+            on_section: None,
         });
         self.range = colors.range;
         if word == FlowWord::Stream {
@@ -212,16 +220,27 @@ impl DrawnLines {
     /// As they are drawn for this camera in a picture of so many pixels.
     pub fn cones(&self, camera: &Camera, extent_pixels: [u32; 2]) -> RoundCones {
         let pixel = pixel_at_target(camera, extent_pixels);
+        let forward = camera.frame().forward;
+        let is_level = forward.z.abs() > 1.0 - LEVEL;
         let mut cones = RoundCones::default();
         for set in &self.sets {
             let widest = 0.5 * set.width_pixels * pixel;
+            let height = set.on_section.filter(|_| is_level);
+            let height = height.map(|half| camera.target.z - half * forward.z);
             for (i, line) in set.lines.iter().enumerate() {
                 let radius = widest * set.shares.as_ref().map_or(1.0, |shares| shares[i]);
-                cones.add_line(line.iter().map(|&(place, color)| Vertex {
-                    place,
+                let vertex = |&(place, color): &(DVec3, [f32; 3])| Vertex {
+                    place: DVec3 {
+                        z: height.unwrap_or(place.z),
+                        ..place
+                    },
                     radius,
                     color,
-                }));
+                };
+                match (&line[..], set.shares.is_some()) {
+                    ([symbol], true) => cones.add_symbol(vertex(symbol)),
+                    _ => cones.add_line(line.iter().map(vertex)),
+                }
                 if set.has_heads {
                     add_heads(&mut cones, line, radius, APART_PIXELS * pixel);
                 }

@@ -105,9 +105,9 @@ fn check_lines(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
             "leave them out",
         );
     }
-    if scene.section.section.is_some() {
+    if scene.section.section.is_some() && scene.points_are_spheres() {
         return refused(
-            "with --section: lines lie beside a cut, and not in it",
+            "with --section: a section is of a volume, and spheres are symbols beside it",
             "leave out one of them",
         );
     }

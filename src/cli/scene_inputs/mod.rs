@@ -254,9 +254,6 @@ impl SceneInputs {
         if plan != Plan::One {
             scene.modes.check_several(settings.mode)?;
         }
-        if settings.ambient_occlusion.is_some() && !is_alone {
-            return Err(Error::not_occluded_together());
-        }
         let reader = Reader {
             scene,
             mode: settings.mode,

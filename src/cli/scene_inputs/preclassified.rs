@@ -25,8 +25,6 @@ pub fn check(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
     let several = scene.channels.are_given() || scene.input.component == Some(Component::All);
     if settings.mode != Mode::Composite {
         refused("this is another mode", "leave out --mode")
-    } else if settings.ambient_occlusion.is_some() {
-        refused("occlusion is of values", "leave out --ambient-occlusion")
     } else if matches!(settings.cut_faces, Some(CutFaces::Grey(_))) {
         refused(
             "the greys of --cut-faces=LO,HI are of values",

@@ -3,6 +3,7 @@
 //! ```text
 //! rays end at the geometry      picture = volume + (1 - alpha) geometry
 //! modes that project            have no order along a ray: the geometry lies over the picture
+//! clip planes                   cut the geometry too, and their cuts through it are seen
 //! ```
 //!
 //! Its distances come to the device as the depth buffer of a host whose depth is the distance along the line of sight.
@@ -19,7 +20,7 @@ use crate::named::Named;
 use crate::offscreen::Error;
 use crate::picture::{ColorSpace, Picture};
 use crate::scene::{Scene, positions_in_pixel};
-use crate::technique::{self, InPixel, Settings};
+use crate::technique::{self, ClipPlane, InPixel, Settings};
 use ash::vk;
 use std::sync::Arc;
 
@@ -30,11 +31,14 @@ const NOTHING: f32 = 1e30;
 #[derive(Debug)]
 pub(super) struct Behind {
     geometry: Arc<RoundCones>,
-    /// What was seen last, and from where.
-    seen: Option<(Camera, InPixel, Seen)>,
+    /// What was seen last, from where, and cut by which planes.
+    seen: Option<(SeenBy, Seen)>,
     /// Its depths on the device.
     image: Option<DepthImage>,
 }
+
+/// From where, through which place of each pixel, and behind which planes.
+type SeenBy = (Camera, InPixel, Vec<ClipPlane>);
 
 #[derive(Debug)]
 struct DepthImage {
@@ -120,14 +124,17 @@ impl Behind {
     ) -> Result<(), Error> {
         check_geometry(scene.settings)?;
         let (camera, extent) = (*scene.camera, scene.extent_pixels);
-        let is_there = self.seen.as_ref().is_some_and(|(was, at, seen)| {
-            (*was, *at) == (camera, in_pixel)
-                && seen.pixels.len() == extent[0] as usize * extent[1] as usize
+        let from = (camera, in_pixel, scene.settings.clip_planes.clone());
+        let is_there = self.seen.as_ref().is_some_and(|(was, seen)| {
+            *was == from && seen.pixels.len() == extent[0] as usize * extent[1] as usize
         });
         if is_there {
             return Ok(());
         }
-        let seen = self.geometry.seen(&camera, extent, in_pixel.at);
+        let planes: Vec<_> = from.2.iter().map(ClipPlane::unit).collect();
+        let seen = self
+            .geometry
+            .seen_cut(&camera, extent, in_pixel.at, &planes);
         if !scene.settings.mode.is_projection() {
             let depths = depths(&camera, extent, in_pixel, &seen);
             let is_other = |image: &DepthImage| image.image.extent()[..2] != extent;
@@ -139,7 +146,7 @@ impl Behind {
                 .expect("made above")
                 .fill(device, &depths)?;
         }
-        self.seen = Some((camera, in_pixel, seen));
+        self.seen = Some((from, seen));
         Ok(())
     }
 
@@ -151,7 +158,7 @@ impl Behind {
 
     /// Puts what was seen last behind the pixels of a volume.
     pub fn put(&self, pixels: &mut [[f32; 4]], settings: &Settings) {
-        let Some((_, _, seen)) = &self.seen else {
+        let Some((_, seen)) = &self.seen else {
             return;
         };
         for (pixel, own) in pixels.iter_mut().zip(&seen.pixels) {

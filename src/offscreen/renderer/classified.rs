@@ -2,7 +2,7 @@
 
 use super::{Classifying, Renderer, parts_of};
 use crate::offscreen::Error;
-use crate::offscreen::light::{Matter, made_light};
+use crate::offscreen::light::{Matter, light_plan_of, made_light, matter_volumes};
 use crate::resident::GpuTransfer;
 use crate::scene::Scene;
 use crate::technique;
@@ -19,7 +19,7 @@ impl Renderer<'_> {
         let scene = &scene.under_labels();
         let grid = scene.volume.grid();
         let view = scene.view(&grid, [0.0; 2]);
-        let plan = view.light_plan()?;
+        let plan = light_plan_of(scene, &view)?;
         let surfaces = view.matter_of_surfaces();
         let functions: Option<Vec<_>> = match &surfaces {
             Some(_) if plan.is_none() => return Ok(()),
@@ -29,8 +29,9 @@ impl Renderer<'_> {
         let functions = functions.ok_or(technique::Error::NoTransferFunction)?;
         self.set_transfers(scene, &functions)?;
         let Some(plan) = plan else { return Ok(()) };
-        let matter = Matter::of(scene, functions[0]);
-        let parts = parts_of(&self.resident, self.shown, scene);
+        let matter = Matter::of(scene, &functions);
+        let mut parts = parts_of(&self.resident, self.shown, scene);
+        parts.truncate(matter_volumes(scene).len());
         let (device, slices) = (&mut self.device, &mut self.slices);
         let transfer = self.transfer.get();
         self.light.of((matter, plan), |(_, plan)| {

@@ -50,6 +50,7 @@ pub const FEATURES: &[Feature] = &[
     feature("technique", "shear-warp", "--technique shear-warp"),
     // Scattered points are splats without a word.
     of(VOLUMES, feature("technique", "splats", "--technique splat")),
+    feature("technique", "path tracing", "--technique pathtrace --spp 2"),
     feature("mode", "maximum", "--mode mip"),
     feature("mode", "mean", "--mode average"),
     feature("mode", "X-ray", "--mode xray"),
@@ -117,6 +118,14 @@ pub const FEATURES: &[Feature] = &[
             "--points-as spheres",
         ),
     ),
+    of(
+        &[Input::Points],
+        unseen(feature(
+            "input",
+            "scattered points on a grid",
+            "--points-as grid --grid 16x16x12",
+        )),
+    ),
     feature("denoise", "noise filter", "--denoise gaussian"),
     feature("clip", "clip plane", "--clip {clip}"),
     feature("crop", "crop", "--crop 1,13,0,99,0,99"),
@@ -163,6 +172,10 @@ pub const GIVEN: &[[&str; 2]] = &[
     ["pre-integrated classification", "lines of the wind"],
     ["pre-integrated classification", "lines of the map"],
     ["pre-integrated classification", "film of all times"],
+    [
+        "pre-integrated classification",
+        "scattered points on a grid",
+    ],
     ["mean", "section"],
     ["mean", "sections of three directions"],
     ["mean", "thick section"],
