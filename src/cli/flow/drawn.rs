@@ -17,7 +17,7 @@ use super::style::StyleWord;
 use crate::annotate::LineLegend;
 use crate::camera::Camera;
 use crate::color::decode_srgb;
-use crate::geometry::{RoundCones, Vertex};
+use crate::geometry::{Geometry, RoundCones, Vertex};
 use crate::points::Points;
 use crate::volume::Header;
 use glam::DVec3;
@@ -210,7 +210,7 @@ impl DrawnLines {
     }
 
     /// As they are drawn for this camera in a picture of so many pixels.
-    pub fn cones(&self, camera: &Camera, extent_pixels: [u32; 2]) -> RoundCones {
+    pub fn geometry(&self, camera: &Camera, extent_pixels: [u32; 2]) -> Geometry {
         let pixel = pixel_at_target(camera, extent_pixels);
         let mut cones = RoundCones::default();
         for set in &self.sets {
@@ -227,7 +227,7 @@ impl DrawnLines {
                 }
             }
         }
-        cones
+        cones.into()
     }
 }
 
