@@ -74,7 +74,7 @@ pub use window::WindowWord;
 pub use with::{WithFlags, WithWord};
 
 use super::Error;
-use super::flow::{FlowFlags, FlowStyleFlags};
+use super::flow::{BarbFlags, FlowFlags, FlowStyleFlags};
 use super::map::MapFlags;
 use crate::technique::Settings;
 use clap::Args;
@@ -113,6 +113,8 @@ pub struct SceneFlags {
     pub flow: FlowFlags,
     #[command(flatten)]
     pub flow_style: FlowStyleFlags,
+    #[command(flatten)]
+    pub barbs: BarbFlags,
     #[command(flatten)]
     pub map: MapFlags,
     #[command(flatten)]
@@ -153,9 +155,20 @@ impl SceneFlags {
         self.with.inline_files()
     }
 
-    /// True where geometry is drawn with the volume: lines of the wind or of the Earth, or points as spheres.
+    /// True where geometry is drawn with the volume: what words ask for, or points as spheres.
     pub fn has_lines(&self) -> bool {
-        self.flow.flow.is_some() || self.map.map.is_some() || self.points_are_spheres()
+        self.geometry_word().is_some() || self.points_are_spheres()
+    }
+
+    /// The first flag that asks for geometry.
+    pub fn geometry_word(&self) -> Option<&'static str> {
+        let words = [
+            ("--flow", self.flow.flow.is_some()),
+            ("--map", self.map.map.is_some()),
+            ("--barbs", self.barbs.barbs.is_some()),
+        ];
+        let mut given = words.into_iter().filter(|(_, is_given)| *is_given);
+        given.next().map(|(word, _)| word)
     }
 
     /// True where pixels are means of random paths.

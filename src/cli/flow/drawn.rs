@@ -10,11 +10,12 @@ use super::super::{
     flags::{InputFlags, SceneFlags},
     progress::Progress,
 };
+use super::barbs::{self, Barbs};
 use super::colors::LineColors;
 use super::film::{FilmSeed, FilmTime, seeds_of};
 use super::flags::{FlowColor, FlowWord};
 use super::style::StyleWord;
-use crate::annotate::LineLegend;
+use crate::annotate::{ColorLegend, DegreeLine, GeometryLegend};
 use crate::camera::Camera;
 use crate::color::decode_srgb;
 use crate::geometry::{Geometry, RoundCones, Vertex};
@@ -34,11 +35,16 @@ const HEAD_LENGTH_RADII: f64 = 10.0;
 pub struct DrawnLines {
     sets: Vec<LineSet>,
     /// What the colours of the wind mean, where they have several.
-    legend: Option<LineLegend>,
+    legend: Option<ColorLegend>,
     /// Values at the ends of these colours.
     range: [f64; 2],
     /// Where lines of other frames of a film begin.
     seeds: Vec<FilmSeed>,
+    barbs: Option<Barbs>,
+    /// What symbols mean, a sentence each.
+    words: Vec<String>,
+    /// Meridians and parallels.
+    degrees: Vec<DegreeLine>,
 }
 
 /// Lines that look alike.
@@ -60,7 +66,7 @@ impl DrawnLines {
     pub fn spheres(
         points: &Points,
         is_kept: impl Fn(DVec3) -> bool,
-        legend: LineLegend,
+        legend: ColorLegend,
         pixels: Option<f64>,
     ) -> Self {
         let function = &legend.function;
@@ -86,8 +92,8 @@ impl DrawnLines {
         Self {
             sets: vec![set],
             range: [low, high],
-            seeds: Vec::new(),
             legend: Some(legend),
+            ..Self::default()
         }
     }
 
@@ -95,6 +101,9 @@ impl DrawnLines {
     pub fn with(mut self, more: Self) -> Self {
         self.sets.extend(more.sets);
         self.seeds = more.seeds;
+        self.barbs = more.barbs;
+        self.words = more.words;
+        self.degrees = more.degrees;
         self.legend = self.legend.or(more.legend);
         self
     }
@@ -108,7 +117,7 @@ impl DrawnLines {
         of_film: Option<FilmTime>,
         progress: &Progress,
     ) -> Result<Option<Self>, Error> {
-        if scene.flow.flow.is_none() && scene.map.map.is_none() {
+        if scene.geometry_word().is_none() {
             return Ok(None);
         }
         let stretch = DVec3::new(1.0, 1.0, height_factor);
@@ -116,7 +125,15 @@ impl DrawnLines {
         if let Some(map) = &scene.map.map {
             for line in map.lines(header)? {
                 let color = [decode_srgb(line.grey); 3];
-                let places = line.places.iter().map(|&place| (stretch * place, color));
+                let places = line.places.iter().map(|&place| stretch * place);
+                if let Some((degrees, is_meridian)) = line.degrees {
+                    drawn.degrees.push(DegreeLine {
+                        degrees,
+                        is_meridian,
+                        places: places.clone().collect(),
+                    });
+                }
+                let places = places.map(|place| (place, color));
                 drawn.sets.push(LineSet {
                     lines: vec![places.collect()],
                     width_pixels: line.width,
@@ -126,9 +143,44 @@ impl DrawnLines {
             }
         }
         if let Some(word) = scene.flow.flow {
-            drawn.add_wind(word, scene, stretch, of_film, progress)?;
+            let of_seeds = of_film.filter(|film| !film.seeds.is_empty());
+            drawn.add_wind(word, scene, stretch, of_seeds, progress)?;
         }
+        drawn.add_barbs(scene, stretch, of_film, progress)?;
         Ok(Some(drawn))
+    }
+
+    fn add_barbs(
+        &mut self,
+        scene: &SceneFlags,
+        stretch: DVec3,
+        of_film: Option<FilmTime>,
+        progress: &Progress,
+    ) -> Result<(), Error> {
+        let Some(words) = scene.barbs.barbs else {
+            return Ok(());
+        };
+        let color = scene.barbs.barb_color.map(|color| color.0);
+        let color = color.unwrap_or_else(|| ink_on(scene.picture.background()));
+        let request = barbs::Request {
+            words,
+            input: &input_of_wind(scene),
+            wind: scene.flow.wind_words()?,
+            stretch,
+            color: color.map(|c| decode_srgb(c as f32)),
+            of_film,
+        };
+        // What there is to say of the wind was said of its lines.
+        let quiet = Progress::of_part();
+        let of_file = if scene.flow.flow.is_some() {
+            &quiet
+        } else {
+            progress
+        };
+        let barbs = Barbs::read(&request, of_file, progress)?;
+        self.words.push(barbs.words.clone());
+        self.barbs = Some(barbs);
+        Ok(())
     }
 
     fn add_wind(
@@ -141,12 +193,7 @@ impl DrawnLines {
     ) -> Result<(), Error> {
         let (flags, style) = (&scene.flow, &scene.flow_style);
         flags.check_words()?;
-        // What is drawn is seldom the wind. What there is to say of the file was said of the volume.
-        let input = &InputFlags {
-            variable: None,
-            component: None,
-            ..scene.input.clone()
-        };
+        let input = &input_of_wind(scene);
         let quiet = Progress::of_part();
         let traced = flags.traced(word, input, of_film, &quiet, progress)?;
         let one = match flags.color()? {
@@ -186,7 +233,7 @@ impl DrawnLines {
         if word == FlowWord::Stream {
             self.seeds = seeds_of(&traced.lines);
         }
-        self.legend = one.is_none().then(|| LineLegend {
+        self.legend = one.is_none().then(|| ColorLegend {
             function: colors.function(),
             caption: traced.caption,
             unit: traced.unit,
@@ -204,9 +251,14 @@ impl DrawnLines {
         &self.seeds
     }
 
-    /// What their colours mean; `None` where they have one.
-    pub fn legend(&self) -> Option<&LineLegend> {
-        self.legend.as_ref()
+    /// What there is to say of them in a picture.
+    pub fn legend(&self) -> GeometryLegend<'_> {
+        GeometryLegend {
+            lines: self.legend.as_ref(),
+            ground: None,
+            words: &self.words,
+            degrees: &self.degrees,
+        }
     }
 
     /// As they are drawn for this camera in a picture of so many pixels.
@@ -227,8 +279,27 @@ impl DrawnLines {
                 }
             }
         }
-        cones.into()
+        let mut geometry = Geometry::from(cones);
+        if let Some(barbs) = &self.barbs {
+            barbs.add(&mut geometry, pixel);
+        }
+        geometry
     }
+}
+
+/// What is drawn is seldom the wind. What there is to say of the file was said of the volume.
+fn input_of_wind(scene: &SceneFlags) -> InputFlags {
+    InputFlags {
+        variable: None,
+        component: None,
+        ..scene.input.clone()
+    }
+}
+
+/// sRGB of symbols that are to be seen: dark on a light background, else light.
+fn ink_on(background: Option<[f64; 4]>) -> [f64; 3] {
+    let is_light = background.is_some_and(|[r, g, b, a]| a > 0.5 && (r + g + b) / 3.0 > 0.6);
+    if is_light { [0.1; 3] } else { [0.95; 3] }
 }
 
 /// World length of a pixel at the distance of the target.

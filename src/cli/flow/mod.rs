@@ -4,6 +4,7 @@
 //! wind -> seeds -> lines -> values -> .vtp, .csv or .glb
 //! ```
 
+mod barbs;
 mod causes;
 mod colors;
 mod components;
@@ -18,6 +19,7 @@ mod value;
 mod variable;
 mod wind;
 
+pub use barbs::BarbFlags;
 pub use drawn::DrawnLines;
 pub use film::{FilmSeed, FilmTime};
 pub use flags::{FlowFlags, FlowWord};

@@ -37,6 +37,12 @@ pub struct MapFlags {
     pub map: Option<MapWords>,
 }
 
+/// Whether a place of the world lies in the southern hemisphere; none does where the latitude is not known.
+pub fn is_southern(header: &Header) -> impl Fn(DVec3) -> bool {
+    let projection = Projection::of(header);
+    move |place| projection.is_some_and(|map| map.latitude([place.x, place.y]) < 0.0)
+}
+
 /// A line on the ground, world, before heights are exaggerated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundLine {
@@ -46,6 +52,8 @@ pub struct GroundLine {
     pub grey: f32,
     /// Pixels.
     pub width: f64,
+    /// Of a meridian or a parallel, and whether it is a meridian.
+    pub degrees: Option<(f64, bool)>,
 }
 
 /// Of the larger side of the box.
@@ -101,11 +109,14 @@ impl MapWords {
         let area = Area::around(&grid);
         let mut lines = Vec::new();
         if let Some(degrees) = self.graticule {
-            area.add(
-                &mut lines,
-                &graticule(&projection, &area, degrees),
-                GRATICULE,
-            );
+            for (line, degrees) in graticule(&area, degrees) {
+                let first = lines.len();
+                let places = projected(&projection, &area, [line.as_slice()].into_iter());
+                area.add(&mut lines, &places, GRATICULE);
+                for line in &mut lines[first..] {
+                    line.degrees = Some(degrees);
+                }
+            }
         }
         let mut add = |all: &Lines, look| {
             let places = all.iter().map(|line| line.as_slice());
@@ -167,6 +178,7 @@ impl Area {
                         places,
                         grey,
                         width,
+                        degrees: None,
                     });
                 }
             };
@@ -248,8 +260,11 @@ fn projected<'a>(
     all
 }
 
+/// Longitudes and latitudes along a line, its own degrees, and whether it is a meridian.
+type GraticuleLine = (Vec<[f64; 2]>, (f64, bool));
+
 /// Meridians and parallels.
-fn graticule(projection: &Projection, area: &Area, degrees: f64) -> Flat {
+fn graticule(area: &Area, degrees: f64) -> Vec<GraticuleLine> {
     let kilometres = (area.high[1] - area.low[1]).max(area.width());
     let span = kilometres / 111.2;
     let step = match degrees > 0.0 {
@@ -264,26 +279,20 @@ fn graticule(projection: &Projection, area: &Area, degrees: f64) -> Flat {
         let count = ((to - from) / FINE).ceil() as u32;
         (0..=count).map(move |i| from + (to - from) * f64::from(i) / f64::from(count))
     };
-    let mut lines: Lines = Vec::new();
+    let mut lines = Vec::new();
     let count = (180.0 / step).floor() as i32;
     for i in -count..=count {
         let longitude = f64::from(i) * step;
-        lines.push(
-            fine(-85.0, 85.0)
-                .map(|latitude| [longitude, latitude])
-                .collect(),
-        );
+        let line = fine(-85.0, 85.0).map(|latitude| [longitude, latitude]);
+        lines.push((line.collect(), (longitude, true)));
     }
     let count = (85.0 / step).floor() as i32;
     for i in -count..=count {
         let latitude = f64::from(i) * step;
-        lines.push(
-            fine(-180.0, 180.0)
-                .map(|longitude| [longitude, latitude])
-                .collect(),
-        );
+        let line = fine(-180.0, 180.0).map(|longitude| [longitude, latitude]);
+        lines.push((line.collect(), (latitude, false)));
     }
-    projected(projection, area, lines.iter().map(Vec::as_slice))
+    lines
 }
 
 impl FromStr for MapWords {

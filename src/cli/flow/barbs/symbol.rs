@@ -82,7 +82,9 @@ impl Feathers {
         symbol.lines.push(vec![[0.0, 0.0], [length, 0.0]]);
         let mut at = length;
         for _ in 0..self.flags {
-            symbol.flags.push([[at, 0.0], [at, REACH], [at - FOOT, 0.0]]);
+            symbol
+                .flags
+                .push([[at, 0.0], [at, REACH], [at - FOOT, 0.0]]);
             at -= FOOT;
         }
         at -= gap;
