@@ -1,10 +1,11 @@
 //! Degrees at the ends of meridians and parallels.
 //!
 //! ```text
-//! 20°N      at the end of a line that is nearer to the lower left of the picture, or where the line leaves the picture there
+//! 20°N      at the end of a line that is nearer to the eye, or where the line leaves the picture there
 //! ```
 //!
-//! All meridians have their degrees on one side, and so have all parallels. What would lie over other marks is left out.
+//! All meridians have their degrees on one side of the map, and so have all parallels; where both sides are as near, on the lower
+//! or the left one. What would lie over other marks is left out.
 
 use super::{projector::Projector, sheet::Sheet};
 use crate::figure::{Anchor, Mark, Point, strokes};
@@ -17,12 +18,16 @@ pub struct DegreeLine {
     pub degrees: f64,
     /// True of a line of one longitude.
     pub is_meridian: bool,
-    /// Along it, in the world as it is drawn.
+    /// Along it from the south to the north or from the west to the east, in the world as it is drawn.
     pub places: Vec<DVec3>,
 }
 
 /// How much a pixel to the left counts, where one further down counts 1.
 const LEFT: f64 = 0.25;
+/// Sides are as near where their distances differ by less than this part.
+const AS_NEAR: f64 = 0.02;
+/// Ends lie on one side of the map that are as far out up to this part of it.
+const ON_SIDE: f64 = 1e-6;
 /// Height of words.
 const EMS: f64 = 0.9;
 /// From the end of a line to the middle of its words, in em.
@@ -46,6 +51,11 @@ impl DegreeLine {
         format!("{degrees}°{side}")
     }
 
+    fn end(&self, end: usize) -> Option<DVec3> {
+        let ends = [self.places.first(), self.places.last()];
+        ends[end].copied()
+    }
+
     /// Where it is seen, from one end (0) or the other (1); nothing where a part of it lies behind the eye.
     fn seen(&self, projector: &Projector, end: usize) -> Option<Vec<Point>> {
         let mut points = Vec::with_capacity(self.places.len());
@@ -67,19 +77,57 @@ pub(super) fn draw(sheet: &mut Sheet, projector: &Projector, lines: &[DegreeLine
     for is_meridian in [true, false] {
         let family = lines.iter().filter(|line| line.is_meridian == is_meridian);
         let family: Vec<&DegreeLine> = family.collect();
-        let score = |end: usize| {
-            let all = family.iter().filter_map(|line| line.seen(projector, end));
-            let ends: Vec<Point> = all.map(|points| points[0]).collect();
-            let sum: f64 = ends.iter().map(|[x, y]| y - LEFT * x).sum();
-            sum / ends.len().max(1) as f64
-        };
-        let end = usize::from(score(1) > score(0));
+        let end = nearer_end(projector, &family);
+        let family = on_one_side(family, end);
         for line in family {
             if let Some(points) = line.seen(projector, end) {
                 write(sheet, &points, &line.words());
             }
         }
     }
+}
+
+/// The end of all lines that is to have their degrees.
+fn nearer_end(projector: &Projector, family: &[&DegreeLine]) -> usize {
+    let mean = |end: usize, of: &dyn Fn(DVec3) -> f64| {
+        let ends = family
+            .iter()
+            .filter(|line| line.seen(projector, end).is_some());
+        let numbers: Vec<f64> = ends.filter_map(|line| line.end(end)).map(of).collect();
+        numbers.iter().sum::<f64>() / numbers.len().max(1) as f64
+    };
+    let depths = [0, 1].map(|end| mean(end, &|place| projector.depth(place)));
+    if (depths[0] - depths[1]).abs() > AS_NEAR * depths[0].abs().max(depths[1].abs()) {
+        return usize::from(depths[1] < depths[0]);
+    }
+    let low_and_left = |place| {
+        let [x, y] = projector.point(place);
+        y - LEFT * x
+    };
+    let scores = [0, 1].map(|end| mean(end, &low_and_left));
+    usize::from(scores[1] > scores[0])
+}
+
+/// The lines that end on the side of the map where most of them can: meridians that reach its south or its north, and
+/// parallels that reach its west or its east.
+fn on_one_side(family: Vec<&DegreeLine>, end: usize) -> Vec<&DegreeLine> {
+    let across = |place: DVec3, is_meridian: bool| if is_meridian { place.y } else { place.x };
+    let out = |line: &DegreeLine, end: usize| {
+        let place = line.end(end)?;
+        Some(across(place, line.is_meridian))
+    };
+    let both = family.iter().flat_map(|line| [out(line, 0), out(line, 1)]);
+    let [low, high] = both
+        .flatten()
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| {
+            [low.min(at), high.max(at)]
+        });
+    // Lines go from the south to the north, and from the west to the east.
+    let side = if end == 0 { low } else { high };
+    let is_on = |line: &&DegreeLine| {
+        out(line, end).is_some_and(|at| (at - side).abs() <= ON_SIDE * (high - low))
+    };
+    family.into_iter().filter(is_on).collect()
 }
 
 fn write(sheet: &mut Sheet, points: &[Point], words: &str) {
@@ -230,7 +278,7 @@ mod tests {
             240,
             &[
                 line(-90.0, true, [dvec3(w, -80.0, 0.0), dvec3(w, 80.0, 0.0)]),
-                line(-80.0, true, [dvec3(e, 80.0, 0.0), dvec3(e, -80.0, 0.0)]),
+                line(-80.0, true, [dvec3(e, -80.0, 0.0), dvec3(e, 80.0, 0.0)]),
                 line(25.0, false, [dvec3(-80.0, 0.0, 0.0), dvec3(80.0, 0.0, 0.0)]),
             ],
         );
@@ -241,6 +289,38 @@ mod tests {
         assert!((places[0][0] - 60.0).abs() < 1e-9 && places[0][1] > 200.0);
         assert!((places[1][0] - 180.0).abs() < 1e-9 && places[1][1] > 200.0);
         assert!(places[2][0] < 40.0 && (places[2][1] - 120.0).abs() < 6.0);
+    }
+
+    #[test]
+    fn a_line_that_ends_on_another_side_of_the_map_has_none_and_the_nearer_side_has_them() {
+        let meridian = |degrees: f64, south: f64| {
+            let x = 4.0 * degrees;
+            line(degrees, true, [dvec3(x, south, 0.0), dvec3(x, 80.0, 0.0)])
+        };
+        // The one in the west begins at the western side.
+        let lines = [
+            meridian(-20.0, -30.0),
+            meridian(-10.0, -80.0),
+            meridian(10.0, -80.0),
+        ];
+        let found = texts(240, &lines);
+        let words: Vec<&str> = found.iter().map(|(text, _)| text.as_str()).collect();
+        assert_eq!(words, ["10°W", "10°E"]);
+        // From the north the northern ends are nearer, where all of them end.
+        for (y, wanted) in [(-400.0, 0), (400.0, 1)] {
+            let camera = Camera {
+                eye: dvec3(0.0, y, 200.0),
+                target: DVec3::ZERO,
+                up: DVec3::Z,
+                projection: Projection::Perspective { fov_degrees: 30.0 },
+                zoom: 1.0,
+            };
+            let projector = Projector::new(&camera, [240.0; 2]);
+            let all: Vec<&DegreeLine> = lines.iter().collect();
+            let end = nearer_end(&projector, &all);
+            assert_eq!(end, wanted);
+            assert_eq!(on_one_side(all, end).len(), 2 + wanted);
+        }
     }
 
     #[test]

@@ -75,11 +75,26 @@ pub(super) fn words(sheet: &mut Sheet, seen: &Seen, has_source: bool) {
         true => 2.6 + 1.4 * levels as f64,
         false => 1.0,
     };
-    let words = seen.geometry.words.iter();
-    let lines = words.flat_map(|words| sheet.wrapped(words, 1.0, WIDEST * width, 4));
+    let words = seen.geometry.words.iter().map(|words| unparted(words));
+    let lines = words.flat_map(|words| sheet.wrapped(&words, 1.0, WIDEST * width, 4));
     let lines: Vec<String> = lines.collect();
     for (at, line) in lines.iter().rev().enumerate() {
         let y = height - (below + 1.4 * at as f64) * em;
         sheet.text_on_ground([width - em, y], line, 1.0, Anchor::End);
     }
+}
+
+/// A number and its unit stay on one line.
+fn unparted(words: &str) -> String {
+    let mut kept = String::with_capacity(words.len());
+    let mut follows_digit = false;
+    for letter in words.chars() {
+        kept.push(if letter == ' ' && follows_digit {
+            '\u{a0}'
+        } else {
+            letter
+        });
+        follows_digit = letter.is_ascii_digit();
+    }
+    kept
 }

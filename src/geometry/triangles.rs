@@ -38,6 +38,14 @@ impl Triangles {
         self.triangles.extend(moved);
     }
 
+    /// Adds all of the other.
+    ///
+    /// # Panics
+    /// Where there would be more than 2^32 corners.
+    pub fn append(&mut self, other: &Self) {
+        self.add(&other.corners, other.triangles.iter().copied());
+    }
+
     /// How many triangles there are.
     pub fn len(&self) -> usize {
         self.triangles.len()

@@ -64,6 +64,18 @@ impl LevelOrHeight {
     }
 }
 
+impl LevelOrHeight {
+    /// As a person writes it: `level 3`, `1.5 km`, `850 hPa`.
+    pub fn words(self) -> String {
+        match self {
+            Self::Level(level) => format!("level {level}"),
+            Self::Metres(metres) if metres.abs() >= 1e3 => format!("{} km", 1e-3 * metres),
+            Self::Metres(metres) => format!("{metres} m"),
+            Self::Pascals(pascals) => format!("{} hPa", 0.01 * pascals),
+        }
+    }
+}
+
 impl FromStr for LevelOrHeight {
     type Err = String;
 
@@ -122,6 +134,8 @@ mod tests {
             assert_eq!(found, wanted);
             assert_eq!(found.to_string().parse(), Ok(wanted));
         }
+        assert_eq!(LevelOrHeight::Metres(1500.0).words(), "1.5 km");
+        assert_eq!(LevelOrHeight::Pascals(85_000.0).words(), "850 hPa");
         for text in ["", "-1", "1.5", "hPa", "-3hPa", "infm", "3 mi"] {
             assert!(text.parse::<LevelOrHeight>().is_err(), "{text}");
         }

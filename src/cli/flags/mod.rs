@@ -75,6 +75,7 @@ pub use with::{WithFlags, WithWord};
 
 use super::Error;
 use super::flow::{BarbFlags, FlowFlags, FlowStyleFlags};
+use super::ground::GroundFlags;
 use super::map::MapFlags;
 use crate::technique::Settings;
 use clap::Args;
@@ -117,6 +118,8 @@ pub struct SceneFlags {
     pub barbs: BarbFlags,
     #[command(flatten)]
     pub map: MapFlags,
+    #[command(flatten)]
+    pub ground: GroundFlags,
     #[command(flatten)]
     pub point_look: PointLookFlags,
     #[command(flatten)]
@@ -166,6 +169,7 @@ impl SceneFlags {
             ("--flow", self.flow.flow.is_some()),
             ("--map", self.map.map.is_some()),
             ("--barbs", self.barbs.barbs.is_some()),
+            ("--ground", self.ground.ground.is_some()),
         ];
         let mut given = words.into_iter().filter(|(_, is_given)| *is_given);
         given.next().map(|(word, _)| word)

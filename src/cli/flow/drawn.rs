@@ -8,6 +8,8 @@
 use super::super::{
     Error,
     flags::{InputFlags, SceneFlags},
+    ground::Ground,
+    map::GroundLine,
     progress::Progress,
 };
 use super::barbs::{self, Barbs};
@@ -41,6 +43,7 @@ pub struct DrawnLines {
     /// Where lines of other frames of a film begin.
     seeds: Vec<FilmSeed>,
     barbs: Option<Barbs>,
+    ground: Option<Ground>,
     /// What symbols mean, a sentence each.
     words: Vec<String>,
     /// Meridians and parallels.
@@ -55,6 +58,8 @@ struct LineSet {
     /// Of each line, where they differ: how wide it is of that.
     shares: Option<Vec<f64>>,
     has_heads: bool,
+    /// By its radius, over what it lies on.
+    is_lifted: bool,
 }
 
 /// Pixels across a sphere of the largest value, and what the smallest has of it.
@@ -88,6 +93,7 @@ impl DrawnLines {
             width_pixels: pixels.unwrap_or(SPHERE_PIXELS),
             shares: Some(kept().map(|(_, value)| share(value)).collect()),
             has_heads: false,
+            is_lifted: false,
         };
         Self {
             sets: vec![set],
@@ -102,6 +108,7 @@ impl DrawnLines {
         self.sets.extend(more.sets);
         self.seeds = more.seeds;
         self.barbs = more.barbs;
+        self.ground = more.ground;
         self.words = more.words;
         self.degrees = more.degrees;
         self.legend = self.legend.or(more.legend);
@@ -122,25 +129,10 @@ impl DrawnLines {
         }
         let stretch = DVec3::new(1.0, 1.0, height_factor);
         let mut drawn = Self::default();
+        let at = of_film.map(|film| film.time);
+        drawn.ground = Ground::read(scene, header, stretch, at, progress)?;
         if let Some(map) = &scene.map.map {
-            for line in map.lines(header)? {
-                let color = [decode_srgb(line.grey); 3];
-                let places = line.places.iter().map(|&place| stretch * place);
-                if let Some((degrees, is_meridian)) = line.degrees {
-                    drawn.degrees.push(DegreeLine {
-                        degrees,
-                        is_meridian,
-                        places: places.clone().collect(),
-                    });
-                }
-                let places = places.map(|place| (place, color));
-                drawn.sets.push(LineSet {
-                    lines: vec![places.collect()],
-                    width_pixels: line.width,
-                    shares: None,
-                    has_heads: false,
-                });
-            }
+            drawn.add_map(map.lines(header)?, stretch);
         }
         if let Some(word) = scene.flow.flow {
             let of_seeds = of_film.filter(|film| !film.seeds.is_empty());
@@ -148,6 +140,40 @@ impl DrawnLines {
         }
         drawn.add_barbs(scene, stretch, of_film, progress)?;
         Ok(Some(drawn))
+    }
+
+    /// Lines of the Earth, on the terrain where there is any.
+    fn add_map(&mut self, lines: Vec<GroundLine>, stretch: DVec3) {
+        let terrain = self
+            .ground
+            .as_ref()
+            .and_then(|ground| ground.terrain.as_ref());
+        for line in lines {
+            let parts = match terrain {
+                Some(terrain) => terrain.draped(&line.places),
+                None => vec![line.places],
+            };
+            let drawn = parts
+                .iter()
+                .map(|part| part.iter().map(|&place| stretch * place));
+            if let Some((degrees, is_meridian)) = line.degrees {
+                self.degrees.push(DegreeLine {
+                    degrees,
+                    is_meridian,
+                    places: drawn.clone().flatten().collect(),
+                });
+            }
+            let color = [decode_srgb(line.grey); 3];
+            self.sets.push(LineSet {
+                lines: drawn
+                    .map(|part| part.map(|place| (place, color)).collect())
+                    .collect(),
+                width_pixels: line.width,
+                shares: None,
+                has_heads: false,
+                is_lifted: self.ground.is_some(),
+            });
+        }
     }
 
     fn add_barbs(
@@ -161,13 +187,21 @@ impl DrawnLines {
             return Ok(());
         };
         let color = scene.barbs.barb_color.map(|color| color.0);
-        let color = color.unwrap_or_else(|| ink_on(scene.picture.background()));
+        let is_on_ground = self.ground.is_some();
+        let color = color.unwrap_or_else(|| match is_on_ground {
+            true => DARK,
+            false => ink_on(scene.picture.background()),
+        });
+        let is_dark = color.iter().sum::<f64>() < 1.5;
+        let casing = is_on_ground.then_some(if is_dark { LIGHT } else { DARK });
+        let linear = |color: [f64; 3]| color.map(|c| decode_srgb(c as f32));
         let request = barbs::Request {
             words,
             input: &input_of_wind(scene),
             wind: scene.flow.wind_words()?,
             stretch,
-            color: color.map(|c| decode_srgb(c as f32)),
+            color: linear(color),
+            casing: casing.map(linear),
             of_film,
         };
         // What there is to say of the wind was said of its lines.
@@ -228,6 +262,7 @@ impl DrawnLines {
             width_pixels: style.flow_width.unwrap_or(WIDTH),
             shares: None,
             has_heads: look == StyleWord::Arrows,
+            is_lifted: false,
         });
         self.range = colors.range;
         if word == FlowWord::Stream {
@@ -255,7 +290,10 @@ impl DrawnLines {
     pub fn legend(&self) -> GeometryLegend<'_> {
         GeometryLegend {
             lines: self.legend.as_ref(),
-            ground: None,
+            ground: self
+                .ground
+                .as_ref()
+                .and_then(|ground| ground.legend.as_ref()),
             words: &self.words,
             degrees: &self.degrees,
         }
@@ -269,8 +307,13 @@ impl DrawnLines {
             let widest = 0.5 * set.width_pixels * pixel;
             for (i, line) in set.lines.iter().enumerate() {
                 let radius = widest * set.shares.as_ref().map_or(1.0, |shares| shares[i]);
+                let lift = if set.is_lifted {
+                    radius * DVec3::Z
+                } else {
+                    DVec3::ZERO
+                };
                 cones.add_line(line.iter().map(|&(place, color)| Vertex {
-                    place,
+                    place: place + lift,
                     radius,
                     color,
                 }));
@@ -280,6 +323,9 @@ impl DrawnLines {
             }
         }
         let mut geometry = Geometry::from(cones);
+        if let Some(ground) = &self.ground {
+            geometry.triangles = ground.triangles.clone();
+        }
         if let Some(barbs) = &self.barbs {
             barbs.add(&mut geometry, pixel);
         }
@@ -296,10 +342,14 @@ fn input_of_wind(scene: &SceneFlags) -> InputFlags {
     }
 }
 
+/// sRGB of symbols.
+const DARK: [f64; 3] = [0.1; 3];
+const LIGHT: [f64; 3] = [0.95; 3];
+
 /// sRGB of symbols that are to be seen: dark on a light background, else light.
 fn ink_on(background: Option<[f64; 4]>) -> [f64; 3] {
     let is_light = background.is_some_and(|[r, g, b, a]| a > 0.5 && (r + g + b) / 3.0 > 0.6);
-    if is_light { [0.1; 3] } else { [0.95; 3] }
+    if is_light { DARK } else { LIGHT }
 }
 
 /// World length of a pixel at the distance of the target.

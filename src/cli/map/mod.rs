@@ -1,4 +1,4 @@
-//! `--map coast,borders,graticule`: where the volume lies on the Earth, drawn at sea level.
+//! `--map coast,borders,graticule,terrain`: where the volume lies on the Earth, drawn at sea level or on the terrain.
 //!
 //! ```text
 //! margin      a fifth of the box's larger side around it
@@ -25,13 +25,15 @@ pub struct MapWords {
     borders: bool,
     /// Degrees between lines, 0 where they are chosen.
     graticule: Option<f64>,
+    terrain: bool,
 }
 
 /// The words, none of them filled in.
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct MapFlags {
-    /// Draw the Earth at sea level around the volume: coast, borders, graticule or graticule=DEG
+    /// Draw the Earth at sea level around the volume: coast, borders, graticule or graticule=DEG; and terrain, the heights
+    /// of the ground below it, with these lines on it [default of the list: coast,borders,graticule]
     #[arg(long, value_name = "LIST", num_args = 0..=1, default_missing_value = MapWords::ALL, help_heading = "Lines")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub map: Option<MapWords>,
@@ -81,11 +83,19 @@ impl MapWords {
         Projection::of(header).is_some_and(off)
     }
 
+    /// True where heights of the ground are drawn.
+    pub fn has_terrain(&self) -> bool {
+        self.terrain
+    }
+
     /// The lines around a volume.
     ///
     /// # Errors
     /// Where it has no place on the Earth, or none is known.
     pub fn lines(&self, header: &Header) -> Result<Vec<GroundLine>, Error> {
+        if !(self.coast || self.borders || self.graticule.is_some()) {
+            return Ok(Vec::new());
+        }
         let projection = Projection::of(header).ok_or_else(|| {
             Error::usage(
                 "--map: the volume has no place on the Earth: wanted latitudes and longitudes, or a WRF file with MAP_PROJ, \
@@ -130,6 +140,11 @@ impl MapWords {
         }
         Ok(lines)
     }
+}
+
+/// World height of what lies on the ground: sea level, or the face of the box nearest to it.
+pub fn ground_height(grid: &Grid) -> f64 {
+    Area::around(grid).height
 }
 
 /// Places on the map, a line each.
@@ -308,6 +323,7 @@ impl FromStr for MapWords {
             match (name, number) {
                 ("coast", None) => words.coast = true,
                 ("borders", None) => words.borders = true,
+                ("terrain", None) => words.terrain = true,
                 ("graticule", None) => words.graticule = Some(0.0),
                 ("graticule", Some(number)) => {
                     let degrees = number.parse().ok();
@@ -318,7 +334,7 @@ impl FromStr for MapWords {
                 }
                 _ => {
                     return Err(format!(
-                        "wanted coast, borders, graticule or graticule=DEG, found {word:?}"
+                        "wanted coast, borders, graticule, graticule=DEG or terrain, found {word:?}"
                     ));
                 }
             }
@@ -337,6 +353,7 @@ impl fmt::Display for MapWords {
             self.coast.then(|| "coast".to_owned()),
             self.borders.then(|| "borders".to_owned()),
             graticule,
+            self.terrain.then(|| "terrain".to_owned()),
         ];
         let words: Vec<String> = words.into_iter().flatten().collect();
         f.write_str(&words.join(","))

@@ -91,7 +91,7 @@ fn check_lines(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
     if !scene.has_lines() {
         return match scene.flow_style.hide_volume {
             true => Err(Error::usage(
-                "--hide-volume leaves nothing without --flow, --map or --barbs",
+                "--hide-volume leaves nothing without --flow, --map, --barbs or --ground",
                 "leave it out",
             )),
             false => Ok(()),

@@ -32,7 +32,7 @@ pub struct BarbFlags {
     )]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub barbs: Option<BarbWords>,
-    /// Colour of wind barbs [default: light, on a light background dark]
+    /// Colour of wind barbs [default: light, on a light background and on the ground dark]
     #[arg(long, value_name = "COLOR", requires = "barbs", help_heading = "Lines")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub barb_color: Option<ColorWord>,

@@ -31,6 +31,9 @@ use symbol::{Feathers, KNOT, axes};
 const WANTED: f64 = 12.0 * 9.0;
 /// Of the distance to the next one.
 const STAFF: f64 = 0.8;
+/// On the ground lines lie on broader ones of another brightness: so many radii, and so far over their middles.
+const CASING_RADII: f64 = 2.2;
+const OVER_CASING_RADII: f64 = 1.6;
 /// Radius of lines: of the staff, and at least in pixels.
 const RADIUS: f64 = 0.02;
 const LEAST_RADIUS_PIXELS: f64 = 0.6;
@@ -43,6 +46,8 @@ pub(super) struct Barbs {
     staff: f64,
     /// Linear.
     color: [f32; 3],
+    /// Of what lies below lines, where the ground has colours.
+    casing: Option<[f32; 3]>,
     /// What they mean, and where they stand.
     pub words: String,
 }
@@ -63,6 +68,7 @@ pub(super) struct Request<'a> {
     pub wind: Option<WindWords>,
     pub stretch: DVec3,
     pub color: [f32; 3],
+    pub casing: Option<[f32; 3]>,
     pub of_film: Option<FilmTime<'a>>,
 }
 
@@ -111,7 +117,7 @@ impl Barbs {
         }
         let words = format!(
             "barbs: half 5, full 10, flag 50 kt, at {}",
-            at_words(place, height, &wind)
+            at_words(place, height, &wind, request.wind.as_ref())
         );
         let without = match missing {
             0 => String::new(),
@@ -125,6 +131,7 @@ impl Barbs {
         Ok(Self {
             staff: STAFF * columns.distance(&wind),
             color: request.color,
+            casing: request.casing,
             all,
             words,
         })
@@ -133,33 +140,54 @@ impl Barbs {
     /// Adds them as they are drawn where a pixel has this world length.
     pub fn add(&self, geometry: &mut Geometry, pixel: f64) {
         let radius = (RADIUS * self.staff).max(LEAST_RADIUS_PIXELS * pixel);
-        let color = self.color;
-        for barb in &self.all {
-            let [along, side] = barb.axes;
-            let at = |[a, b]: [f64; 2]| {
-                let [x, y] = [0, 1].map(|k| self.staff * (a * along[k] + b * side[k]));
-                // Above what it stands on.
-                barb.place + DVec3::new(x, y, radius)
-            };
-            let vertex = |place| Vertex {
-                place: at(place),
-                radius,
-                color,
-            };
-            let symbol = barb.feathers.symbol();
-            for line in symbol.lines {
-                geometry.cones.add_line(line.into_iter().map(vertex));
+        let mut over = radius;
+        if let Some(casing) = self.casing {
+            let broad = CASING_RADII * radius;
+            for barb in &self.all {
+                self.add_lines(geometry, barb, broad, broad, casing);
             }
-            for flag in symbol.flags {
+            over = broad + OVER_CASING_RADII * radius;
+        }
+        for barb in &self.all {
+            self.add_lines(geometry, barb, over, radius, self.color);
+            for flag in barb.feathers.symbol().flags {
                 let corners = flag.map(|place| Corner {
-                    place: at(place),
-                    color,
+                    place: self.place(barb, place, over),
+                    color: self.color,
                 });
                 geometry.triangles.add(&corners, [[0, 1, 2]]);
-                // Seen from its edge too.
-                geometry.cones.add_line(flag.map(vertex));
             }
         }
+    }
+
+    /// Its lines and the edges of its flags, which are seen from the side too, so high over its place.
+    fn add_lines(
+        &self,
+        geometry: &mut Geometry,
+        barb: &Barb,
+        over: f64,
+        radius: f64,
+        color: [f32; 3],
+    ) {
+        let vertex = |place| Vertex {
+            place: self.place(barb, place, over),
+            radius,
+            color,
+        };
+        let symbol = barb.feathers.symbol();
+        for line in symbol.lines {
+            geometry.cones.add_line(line.into_iter().map(vertex));
+        }
+        for flag in symbol.flags {
+            geometry.cones.add_line(flag.map(vertex));
+        }
+    }
+
+    /// A place of a symbol, so high over that of the barb.
+    fn place(&self, barb: &Barb, [a, b]: [f64; 2], over: f64) -> DVec3 {
+        let [along, side] = barb.axes;
+        let [x, y] = [0, 1].map(|k| self.staff * (a * along[k] + b * side[k]));
+        barb.place + DVec3::new(x, y, over)
     }
 }
 
@@ -233,15 +261,24 @@ fn lowest(wind: &Wind, time: f64, column: [u32; 2]) -> Option<Found> {
 }
 
 /// Where they stand, in words: `level 0, 150 m`.
-fn at_words(place: Option<LevelOrHeight>, height: f64, wind: &Wind) -> String {
+fn at_words(
+    place: Option<LevelOrHeight>,
+    height: f64,
+    wind: &Wind,
+    names: Option<&WindWords>,
+) -> String {
     let header = &wind.header;
+    // One layer may lie at any height: its name says which.
+    if let (Some(names), 1) = (names, header.dims[2]) {
+        return format!("the places of {} and {}", names.east, names.north);
+    }
     let metres = header
         .length_metres
         .filter(|_| !header.heights_are_pressures);
     let level = match place {
         None => "the lowest level".to_owned(),
-        Some(LevelOrHeight::Level(level)) => format!("level {level}"),
-        Some(height) => return height.to_string(),
+        Some(LevelOrHeight::Level(level)) => LevelOrHeight::Level(level).words(),
+        Some(height) => return height.words(),
     };
     match metres.filter(|_| header.is_earth) {
         Some(metres) => format!("{level}, {:.0} m", height * metres),
