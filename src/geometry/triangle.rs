@@ -58,8 +58,8 @@ mod tests {
                     let way = place - origin;
                     let hit = triangle_hit(CORNERS, origin, way.normalize()).expect("a hit");
                     assert!((hit.distance - way.length()).abs() < 1e-11);
-                    for k in 0..3 {
-                        assert!((hit.weights[k] - wanted[k]).abs() < 1e-10, "{hit:?}");
+                    for (found, wanted) in hit.weights.into_iter().zip(wanted) {
+                        assert!((found - wanted).abs() < 1e-10, "{hit:?}");
                     }
                     assert!(triangle_hit(CORNERS, origin, -way.normalize()).is_none());
                 }

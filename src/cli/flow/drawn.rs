@@ -327,7 +327,13 @@ impl DrawnLines {
             geometry.triangles = ground.triangles.clone();
         }
         if let Some(barbs) = &self.barbs {
-            barbs.add(&mut geometry, pixel);
+            let forward = camera.frame().forward;
+            barbs.add(&mut geometry, pixel, |place| {
+                match camera.projection.is_perspective() {
+                    true => (camera.eye - place).normalize_or_zero(),
+                    false => -forward,
+                }
+            });
         }
         geometry
     }

@@ -71,8 +71,8 @@ mod tests {
             .skip(1)
             .chain([(650.0, [0.625, 0.66, 0.505]), (9000.0, [0.93; 3])])
         {
-            for c in 0..3 {
-                assert!((srgb(metres)[c] - wanted[c]).abs() < 1e-4, "{metres}");
+            for (found, wanted) in srgb(metres).into_iter().zip(wanted) {
+                assert!((found - wanted).abs() < 1e-4, "{metres}");
             }
         }
         assert!((srgb(0.1)[2] - SEA[2]).abs() < 1e-4);

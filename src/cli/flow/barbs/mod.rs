@@ -31,9 +31,10 @@ use symbol::{Feathers, KNOT, axes};
 const WANTED: f64 = 12.0 * 9.0;
 /// Of the distance to the next one.
 const STAFF: f64 = 0.8;
-/// On the ground lines lie on broader ones of another brightness: so many radii, and so far over their middles.
-const CASING_RADII: f64 = 2.2;
-const OVER_CASING_RADII: f64 = 1.6;
+/// On the ground lines lie before broader ones of another brightness: so many radii, and nearer to the eye by this part of a
+/// staff, so that none lies before the next feather.
+const CASING_RADII: f64 = 1.9;
+const BEFORE_CASING: f64 = 0.4;
 /// Radius of lines: of the staff, and at least in pixels.
 const RADIUS: f64 = 0.02;
 const LEAST_RADIUS_PIXELS: f64 = 0.6;
@@ -137,22 +138,26 @@ impl Barbs {
         })
     }
 
-    /// Adds them as they are drawn where a pixel has this world length.
-    pub fn add(&self, geometry: &mut Geometry, pixel: f64) {
+    /// Adds them as they are drawn where a pixel has this world length and `to_eye` is the way from a place to the eye.
+    pub fn add(&self, geometry: &mut Geometry, pixel: f64, to_eye: impl Fn(DVec3) -> DVec3) {
         let radius = (RADIUS * self.staff).max(LEAST_RADIUS_PIXELS * pixel);
-        let mut over = radius;
+        // Above what they stand on.
+        let mut above = radius * DVec3::Z;
+        let mut before = 0.0;
         if let Some(casing) = self.casing {
             let broad = CASING_RADII * radius;
+            above = broad * DVec3::Z;
+            before = BEFORE_CASING * self.staff;
             for barb in &self.all {
-                self.add_lines(geometry, barb, broad, broad, casing);
+                self.add_lines(geometry, barb, |place| place + above, broad, casing);
             }
-            over = broad + OVER_CASING_RADII * radius;
         }
+        let moved = |place: DVec3| place + above + before * to_eye(place);
         for barb in &self.all {
-            self.add_lines(geometry, barb, over, radius, self.color);
+            self.add_lines(geometry, barb, moved, radius, self.color);
             for flag in barb.feathers.symbol().flags {
                 let corners = flag.map(|place| Corner {
-                    place: self.place(barb, place, over),
+                    place: moved(self.place(barb, place)),
                     color: self.color,
                 });
                 geometry.triangles.add(&corners, [[0, 1, 2]]);
@@ -160,17 +165,17 @@ impl Barbs {
         }
     }
 
-    /// Its lines and the edges of its flags, which are seen from the side too, so high over its place.
+    /// Its lines and the edges of its flags, which are seen from the side too.
     fn add_lines(
         &self,
         geometry: &mut Geometry,
         barb: &Barb,
-        over: f64,
+        moved: impl Fn(DVec3) -> DVec3,
         radius: f64,
         color: [f32; 3],
     ) {
         let vertex = |place| Vertex {
-            place: self.place(barb, place, over),
+            place: moved(self.place(barb, place)),
             radius,
             color,
         };
@@ -183,11 +188,11 @@ impl Barbs {
         }
     }
 
-    /// A place of a symbol, so high over that of the barb.
-    fn place(&self, barb: &Barb, [a, b]: [f64; 2], over: f64) -> DVec3 {
+    /// A place of a symbol.
+    fn place(&self, barb: &Barb, [a, b]: [f64; 2]) -> DVec3 {
         let [along, side] = barb.axes;
         let [x, y] = [0, 1].map(|k| self.staff * (a * along[k] + b * side[k]));
-        barb.place + DVec3::new(x, y, over)
+        barb.place + DVec3::new(x, y, 0.0)
     }
 }
 
