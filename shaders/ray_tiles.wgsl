@@ -42,7 +42,7 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
     }
     let frustum = tile_frustum_of(vec2<f32>(TILE_PIXELS * tile) + 0.5 * f32(TILE_PIXELS));
     let within = tile_bounds(frustum, box_part(frustum));
-    if within.x < within.y {
+    if within.x < within.y || frame.draws_all_tiles != 0u {
         let index = atomicAdd(&ray_list.tiles, 1u);
         textureStore(ray_tiles, entry_of(index), vec4(vec2<f32>(tile), lengths(frustum, within)));
     } else if frame.is_first_brick != 0u {

@@ -236,6 +236,8 @@ struct Frame {
     path_sky_turn: f32,
     path_sky_size: vec2<u32>,
     path_sky_shown: u32,
+    // Tiles are drawn that see nothing of the volume: through a lens, or with a sky.
+    draws_all_tiles: u32,
     // Per world length, times density: no extinction is larger.
     path_majorant: f32,
     // The phase function: see phase.wgsl.

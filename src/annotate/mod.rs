@@ -1,7 +1,7 @@
 //! `--annotate`: words and marks over a picture, one figure of its size, without a ground.
 //!
 //! ```text
-//! top left       title, time            right          colour bar, or patches of colour with names
+//! top left       title, time            right          colour bars, or patches of colour with names
 //! bottom left    arrows, scale bar      bottom right   source           edges   letters of a patient's sides
 //! ```
 //!
@@ -9,7 +9,9 @@
 
 mod bar;
 mod bounds;
+mod degrees;
 mod facts;
+mod geometry;
 mod marks;
 mod moment;
 mod place;
@@ -17,7 +19,9 @@ mod projector;
 mod sheet;
 mod units;
 
+pub use degrees::DegreeLine;
 pub use facts::{Facts, caption, unit};
+pub use geometry::{ColorLegend, GeometryLegend};
 pub use marks::Marks;
 
 use crate::{
@@ -78,19 +82,8 @@ pub struct Seen<'a> {
     pub time: f64,
     /// The range of what the mode projects, where colours are of it.
     pub projected: Option<[f64; 2]>,
-    /// What colours lines in the picture.
-    pub lines: Option<&'a LineLegend>,
-}
-
-/// What the colours of lines mean.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LineLegend {
-    /// Colours of values.
-    pub function: TransferFunction,
-    /// What the values are.
-    pub caption: String,
-    /// As the file has it.
-    pub unit: Option<String>,
+    /// What there is to say of geometry in the picture.
+    pub geometry: GeometryLegend<'a>,
 }
 
 /// Marks as pixels of a picture: linear light, premultiplied.
@@ -190,8 +183,9 @@ impl Annotation {
         let ([width, height], em) = (sheet.size(), sheet.em);
         let mut right = width;
         if self.marks.bar {
-            let lefts = [self.colors(sheet, seen)?, lines(sheet, seen)?];
+            let lefts = [self.colors(sheet, seen)?, geometry::bars(sheet, seen)?];
             right = lefts.into_iter().flatten().fold(right, f64::min);
+            geometry::words(sheet, seen, self.marks.source);
         }
         let mut baseline = 1.6 * em;
         if let Some(title) = &self.marks.title {
@@ -219,6 +213,9 @@ impl Annotation {
             let text = sheet.shortened(&self.facts.source, 0.9, 0.6 * width);
             sheet.text_on_ground([width - em, height - em], &text, 0.9, Anchor::End);
         }
+        if self.marks.orientation {
+            degrees::draw(sheet, projector, seen.geometry.degrees);
+        }
         Ok(())
     }
 
@@ -243,7 +240,7 @@ impl Annotation {
                     unit: unit.as_deref(),
                     is_log: self.is_log,
                     levels: Vec::new(),
-                    slot: slot(seen),
+                    slot: geometry::slot(seen),
                 }
                 .draw(sheet)?;
                 self.levels_below(sheet, seen);
@@ -276,7 +273,7 @@ impl Annotation {
             unit: integral.as_deref().or(facts.unit.as_deref()),
             is_log: self.is_log,
             levels: Vec::new(),
-            slot: slot(seen),
+            slot: geometry::slot(seen),
         };
         bar.draw(sheet)
     }
@@ -297,7 +294,7 @@ impl Annotation {
                     unit: self.facts.unit.as_deref(),
                     is_log: self.is_log,
                     levels: levels.iter().map(|level| level.value).collect(),
-                    slot: slot(seen),
+                    slot: geometry::slot(seen),
                 };
                 return bar.draw(sheet);
             }
@@ -346,32 +343,6 @@ impl Annotation {
             .map(|(at, srgb)| (srgb, name(at)))
             .collect()
     }
-}
-
-/// The bar of the volume is over that of lines.
-fn slot(seen: &Seen) -> [usize; 2] {
-    [0, if seen.lines.is_some() { 2 } else { 1 }]
-}
-
-/// The bar of lines; where it begins.
-fn lines(sheet: &mut Sheet, seen: &Seen) -> Result<Option<f64>, Error> {
-    let Some(legend) = seen.lines else {
-        return Ok(None);
-    };
-    let bar = Bar {
-        function: &legend.function,
-        depth: None,
-        caption: &legend.caption,
-        unit: legend.unit.as_deref(),
-        is_log: false,
-        levels: Vec::new(),
-        slot: if seen.function.is_some() {
-            [1, 2]
-        } else {
-            [0, 1]
-        },
-    };
-    bar.draw(sheet)
 }
 
 /// How many reference lengths of the function an eighth of the box's diagonal is; `None` where something else says how

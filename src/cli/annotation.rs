@@ -104,7 +104,7 @@ pub fn finish(
         function: classification
             .function()
             .filter(|_| !view.scene.hides_volume()),
-        lines: shown.lines().and_then(DrawnLines::legend),
+        geometry: shown.lines().map(DrawnLines::legend).unwrap_or_default(),
         beside: parts.beside(),
         grid: shown.volume.grid(),
         height_factor: shown.height_factor,

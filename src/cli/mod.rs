@@ -20,6 +20,7 @@ mod error;
 mod exaggerate;
 mod flags;
 mod flow;
+mod ground;
 mod help;
 mod histogram;
 mod info;

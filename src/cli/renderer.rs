@@ -342,7 +342,7 @@ impl<'a> Renderer<'a> {
     /// Lines are as wide as pixels of the camera say.
     fn put_lines(&mut self, camera: &Camera, extent_pixels: [u32; 2]) {
         if let (Some(lines), Some(renderer)) = (self.job.lines, &mut self.on_device) {
-            renderer.set_geometry(Some(Arc::new(lines.cones(camera, extent_pixels))));
+            renderer.set_geometry(Some(Arc::new(lines.geometry(camera, extent_pixels))));
         }
     }
 

@@ -85,6 +85,21 @@ impl GridField {
         Ok(self)
     }
 
+    /// The wind as the snapshots have it: east, north and up, or along the axes of the grid, m/s (the third also Pa/s).
+    ///
+    /// # Errors
+    /// Where there is none.
+    pub fn components(&self, time: f64, place: DVec3) -> Result<[f64; 3], Absence> {
+        self.wind(time, place).map(|(wind, _)| wind)
+    }
+
+    /// The height of the ground below or above a place, world; `None` where it is not known.
+    pub fn ground_height(&self, place: DVec3) -> Option<f64> {
+        let ground = self.ground.as_ref()?;
+        let voxel = self.voxel_from_world.transform_point3(place).to_array();
+        Some(ground.at(voxel, self.seam.is_some()))
+    }
+
     fn fast_speed_of_nodes(&self) -> f64 {
         let [nx, ny, nz] = self.grid.dims.map(|n| n as usize);
         let count = nx * ny * nz;

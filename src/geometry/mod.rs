@@ -1,16 +1,17 @@
-//! Opaque geometry beside a volume: lines as tubes, arrows, points as spheres, all of them round cones.
+//! Opaque geometry beside a volume: lines as tubes, arrows and points as spheres, all of them round cones; surfaces of
+//! triangles.
 //!
 //! ```text
 //! round cone   the hull of two spheres:  p(s) = a + s (b - a),  r(s) = r_a + s (r_b - r_a),  0 <= s <= 1
 //! ```
 //!
-//! Each pixel's ray is intersected with them in f64, its origin moved next to the cone first; no polygons. What is found
-//! is a colour and how far away it is, behind which rays through the volume end.
+//! Each pixel's ray is intersected with them in f64, its origin moved next to a cone first. What is found is a colour and
+//! how far away it is, behind which rays through the volume end.
 //!
 //! ```
 //! use glam::DVec3;
 //! use stratavox::camera::{Camera, Projection};
-//! use stratavox::geometry::{RoundCones, Vertex};
+//! use stratavox::geometry::{Geometry, RoundCones, Vertex};
 //!
 //! let mut cones = RoundCones::default();
 //! let vertex = |x: f64| Vertex { place: DVec3::new(x, 0.0, 0.0), radius: 0.5, color: [1.0, 0.5, 0.0] };
@@ -22,18 +23,40 @@
 //!     projection: Projection::Orthographic { view_height: 2.0 },
 //!     zoom: 1.0,
 //! };
-//! let seen = cones.seen(&camera, [9, 9], [0.0; 2]);
+//! let seen = Geometry::from(cones).seen(&camera, [9, 9], [0.0; 2]);
 //! assert_eq!(seen.distances[4 * 9 + 4], 7.5);
 //! ```
 
 mod bounds;
 mod round_cone;
 mod seen;
+mod triangle;
+mod triangles;
 
 pub use round_cone::{Hit, RoundCone};
 pub use seen::Seen;
+pub use triangle::{TriangleHit, triangle_hit};
+pub use triangles::{Corner, Triangles};
 
 use glam::DVec3;
+
+/// All that is drawn beside a volume.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Geometry {
+    /// Lit from the eye.
+    pub cones: RoundCones,
+    /// Seen as they are.
+    pub triangles: Triangles,
+}
+
+impl From<RoundCones> for Geometry {
+    fn from(cones: RoundCones) -> Self {
+        Self {
+            cones,
+            triangles: Triangles::default(),
+        }
+    }
+}
 
 /// The end of a round cone.
 #[derive(Clone, Copy, Debug, PartialEq)]

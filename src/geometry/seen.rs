@@ -1,14 +1,15 @@
-//! What a camera sees of round cones: a colour and a distance a pixel.
+//! What a camera sees of geometry: a colour and a distance a pixel.
 //!
 //! ```text
-//! colour = (A + D |n . v|) c + S |n . v|^e        a light at the eye, v the way to it
+//! colour of a cone       (A + D |n . v|) c + S |n . v|^e        a light at the eye, v the way to it
+//! colour of a triangle   c, as it is
 //! ```
 //!
-//! The picture is cut into rows of tiles that are shared out among the machine's cores; of each cone the pixels of its
-//! bounds are tried. The nearest hit stays, so the order of cones does not matter but where two are equally near: there the
-//! first stays.
+//! The picture is cut into rows of tiles that are shared out among the machine's cores; of each shape the pixels of its
+//! bounds are tried. The nearest hit stays, so the order of shapes does not matter but where two are equally near: there the
+//! first stays, cones before triangles.
 
-use super::{Hit, RoundCone, RoundCones, bounds::Bounds};
+use super::{Corner, Geometry, Hit, RoundCone, bounds::Bounds, triangle::triangle_hit};
 use crate::camera::Camera;
 use glam::DVec3;
 use std::ops::Range;
@@ -32,21 +33,37 @@ pub struct Seen {
     pub distances: Vec<f64>,
 }
 
-/// A cone with the pixels that may see it.
+/// One of all.
+#[derive(Clone, Copy)]
+enum Shape {
+    /// By the number of the segment.
+    Cone(usize),
+    /// By its number.
+    Triangle(usize),
+}
+
+/// One of all, with all that it takes to meet it.
+enum Placed {
+    /// With the colours of its ends.
+    Cone(RoundCone, [[f32; 3]; 2]),
+    Triangle([Corner; 3]),
+}
+
+/// A shape with the pixels that may see it.
 struct Candidate {
-    segment: usize,
+    shape: Shape,
     columns: Range<u32>,
     rows: Range<u32>,
 }
 
-impl RoundCones {
+impl Geometry {
     /// What `camera` sees in a picture of so many pixels, by rays through a place in each pixel, counted from its centre.
     pub fn seen(&self, camera: &Camera, extent: [u32; 2], at: [f64; 2]) -> Seen {
         self.seen_cut(camera, extent, at, &[])
     }
 
     /// The same of what lies in all of these half-spaces, `normal . x >= offset` in the world, with unit normals. The cones
-    /// are solid: cuts through them are seen. Symbols stay whole.
+    /// are solid: cuts through them are seen. Triangles are sheets, and symbols stay whole.
     pub fn seen_cut(
         &self,
         camera: &Camera,
@@ -58,16 +75,23 @@ impl RoundCones {
         let [width, height] = extent;
         let bands = height.div_ceil(BAND) as usize;
         let mut of_band: Vec<Vec<Candidate>> = (0..bands).map(|_| Vec::new()).collect();
-        for segment in 0..self.len() {
-            let (cone, _) = self.cone(segment);
+        let cones = (0..self.cones.len()).map(|segment| {
+            let (cone, _) = self.cones.cone(segment);
             let spheres = [0, 1].map(|k| (cone.ends[k], cone.radii[k]));
-            let Some([columns, rows]) = bounds.of(spheres) else {
+            (Shape::Cone(segment), bounds.of(spheres))
+        });
+        let triangles = (0..self.triangles.len()).map(|triangle| {
+            let corners = self.triangles.corners(triangle).map(|corner| corner.place);
+            (Shape::Triangle(triangle), bounds.of_triangle(corners))
+        });
+        for (shape, found) in cones.chain(triangles) {
+            let Some([columns, rows]) = found else {
                 continue;
             };
             for band in rows.start / BAND..rows.end.div_ceil(BAND) {
                 let [first, end] = [band * BAND, (band + 1) * BAND];
                 of_band[band as usize].push(Candidate {
-                    segment,
+                    shape,
                     columns: columns.clone(),
                     rows: rows.start.max(first)..rows.end.min(end),
                 });
@@ -88,28 +112,25 @@ impl RoundCones {
         let draw = || {
             loop {
                 let next = work.lock().expect("no worker panics").next();
-                let Some((band, ((pixels, distances), cones))) = next else {
+                let Some((band, ((pixels, distances), shapes))) = next else {
                     return;
                 };
                 let top = band as u32 * BAND;
-                for candidate in cones {
-                    let (cone, colors) = self.cone(candidate.segment);
-                    let planes = match self.segments[candidate.segment].is_whole {
-                        true => &[][..],
-                        false => planes,
+                for candidate in shapes {
+                    let shape = self.placed(candidate.shape);
+                    let planes = if self.is_whole(candidate.shape) {
+                        &[]
+                    } else {
+                        planes
                     };
                     for y in candidate.rows.clone() {
                         for x in candidate.columns.clone() {
                             let place = [x, y].map(|n| f64::from(n) + 0.5);
                             let (origin, direction) = rays.at(place[0] + at[0], place[1] + at[1]);
-                            let Some(hit) = first_of(&cone, origin, direction, planes) else {
-                                continue;
-                            };
                             let i = ((y - top) * width + x) as usize;
-                            if hit.distance < distances[i] {
-                                distances[i] = hit.distance;
-                                let own = mixed(colors, hit.part);
-                                pixels[i] = lit(own, hit.normal.dot(direction));
+                            let nearer = shape.nearer([origin, direction], planes, distances[i]);
+                            if let Some((distance, color)) = nearer {
+                                (distances[i], pixels[i]) = (distance, color);
                             }
                         }
                     }
@@ -124,6 +145,58 @@ impl RoundCones {
             draw();
         });
         seen
+    }
+
+    /// Whether no plane cuts it.
+    fn is_whole(&self, shape: Shape) -> bool {
+        matches!(shape, Shape::Cone(segment) if self.cones.segments[segment].is_whole)
+    }
+
+    fn placed(&self, shape: Shape) -> Placed {
+        match shape {
+            Shape::Cone(segment) => {
+                let (cone, colors) = self.cones.cone(segment);
+                Placed::Cone(cone, colors)
+            }
+            Shape::Triangle(triangle) => Placed::Triangle(self.triangles.corners(triangle)),
+        }
+    }
+}
+
+impl Placed {
+    /// How far along a ray what the planes leave of it is met, and its colour there, where that is nearer than something
+    /// else.
+    fn nearer(
+        &self,
+        [origin, direction]: [DVec3; 2],
+        planes: &[(DVec3, f64)],
+        nearest: f64,
+    ) -> Option<(f64, [f32; 4])> {
+        match self {
+            Self::Cone(cone, colors) => {
+                let hit = first_of(cone, origin, direction, planes)?;
+                let color = || lit(mixed(*colors, hit.part), hit.normal.dot(direction));
+                (hit.distance < nearest).then(|| (hit.distance, color()))
+            }
+            Self::Triangle(corners) => {
+                let hit = triangle_hit(corners.map(|corner| corner.place), origin, direction)?;
+                let place = origin + hit.distance * direction;
+                if planes
+                    .iter()
+                    .any(|&(normal, offset)| normal.dot(place) < offset)
+                {
+                    return None;
+                }
+                let color = || {
+                    let [r, g, b] = [0, 1, 2].map(|c| {
+                        let own = corners.map(|corner| f64::from(corner.color[c]));
+                        (0..3).map(|k| hit.weights[k] * own[k]).sum::<f64>() as f32
+                    });
+                    [r, g, b, 1.0]
+                };
+                (hit.distance < nearest).then(|| (hit.distance, color()))
+            }
+        }
     }
 }
 
@@ -168,8 +241,8 @@ fn lit(color: [f32; 3], facing: f64) -> [f32; 4] {
 mod tests {
     use super::*;
     use crate::camera::Projection;
-    use crate::geometry::Vertex;
-    use glam::{DVec3, dvec3};
+    use crate::geometry::{RoundCones, Triangles, Vertex};
+    use glam::dvec3;
 
     fn camera(projection: Projection) -> Camera {
         Camera {
@@ -217,7 +290,7 @@ mod tests {
         for projection in projections() {
             let camera = camera(projection);
             let (extent, at) = ([61, 47], [0.25, -0.4]);
-            let seen = cones.seen(&camera, extent, at);
+            let seen = Geometry::from(cones.clone()).seen(&camera, extent, at);
             let rays = camera.rays(extent);
             let mut hits = 0;
             for (i, found) in seen.distances.iter().enumerate() {
@@ -249,7 +322,7 @@ mod tests {
         };
         // Between heights 0.2 and 0.5, to the right of 0.1.
         let planes = [(DVec3::Z, 0.2), (DVec3::NEG_Z, -0.5), (DVec3::X, 0.1)];
-        let seen = cones.seen_cut(&camera, [40, 40], [0.0; 2], &planes);
+        let seen = Geometry::from(cones.clone()).seen_cut(&camera, [40, 40], [0.0; 2], &planes);
         let facing = AMBIENT + DIFFUSE;
         let (mut cut, mut cap) = (0, 0);
         for (i, (pixel, distance)) in seen.pixels.iter().zip(&seen.distances).enumerate() {
@@ -287,7 +360,7 @@ mod tests {
             projection: Projection::Orthographic { view_height: 4.0 },
             zoom: 1.0,
         };
-        let seen = cones.seen(&camera, [40, 40], [0.0; 2]);
+        let seen = Geometry::from(cones).seen(&camera, [40, 40], [0.0; 2]);
         for (i, (pixel, distance)) in seen.pixels.iter().zip(&seen.distances).enumerate() {
             let [x, y] = [i % 40, i / 40].map(|n| (n as f64 + 0.5) / 10.0 - 2.0);
             let height = 1.0 - x * x - y * y;
@@ -299,6 +372,106 @@ mod tests {
             assert!((distance - (9.0 - facing)).abs() < 1e-12);
             let wanted = 0.5 * (AMBIENT + DIFFUSE * facing) + SPECULAR * facing.powi(EXPONENT);
             assert!((f64::from(pixel[0]) - wanted).abs() < 1e-6);
+        }
+    }
+
+    /// A plane of four corners whose colours are their places, around the eye and below it.
+    #[test]
+    fn a_plane_is_seen_up_to_its_horizon_and_its_colours_are_linear() {
+        let (half, height) = (500.0, 1.7);
+        let corner = |x: f64, y: f64| Corner {
+            place: dvec3(half * x, half * y, 0.0),
+            color: [0.5 + 0.5 * x as f32, 0.5 + 0.5 * y as f32, 0.25],
+        };
+        let corners = [
+            corner(-1.0, -1.0),
+            corner(1.0, -1.0),
+            corner(1.0, 1.0),
+            corner(-1.0, 1.0),
+        ];
+        let mut triangles = Triangles::default();
+        triangles.add(&corners[..1], []);
+        triangles.add(&corners, [[0, 1, 2], [0, 2, 3]]);
+        let geometry = Geometry {
+            triangles,
+            ..Geometry::default()
+        };
+        for projection in projections() {
+            for pitch in [-0.2, -0.9, 0.0] {
+                let eye = dvec3(3.0, -11.0, height);
+                let camera = Camera {
+                    eye,
+                    target: eye + dvec3(0.3, 1.0, pitch),
+                    up: DVec3::Z,
+                    projection,
+                    zoom: 1.0,
+                };
+                let (extent, at) = ([53, 41], [-0.3, 0.2]);
+                let seen = geometry.seen(&camera, extent, at);
+                let rays = camera.rays(extent);
+                let mut met = 0;
+                for (i, (pixel, distance)) in seen.pixels.iter().zip(&seen.distances).enumerate() {
+                    let [x, y] = [i % 53, i / 53].map(|n| n as f64 + 0.5);
+                    let (origin, direction) = rays.at(x + at[0], y + at[1]);
+                    let wanted = -origin.z / direction.z;
+                    let place = origin + wanted * direction;
+                    let [s, t] = [place.x / half, place.y / half];
+                    let is_met = wanted > 0.0 && s.abs() <= 1.0 && t.abs() <= 1.0;
+                    if !is_met {
+                        assert_eq!((*pixel, *distance), ([0.0; 4], f64::INFINITY), "pixel {i}");
+                        continue;
+                    }
+                    met += 1;
+                    // A ray that nearly lies in the plane meets it far away.
+                    let part = 1e-12 / direction.z.abs() + 1e-12;
+                    assert!(
+                        (distance / wanted - 1.0).abs() < part,
+                        "{projection:?}, pixel {i}"
+                    );
+                    let wanted = [0.5 + 0.5 * s, 0.5 + 0.5 * t, 0.25, 1.0];
+                    for c in 0..4 {
+                        assert!((f64::from(pixel[c]) - wanted[c]).abs() < 1e-6, "pixel {i}");
+                    }
+                }
+                assert!(met > 600 || pitch == 0.0, "{projection:?}, {pitch}: {met}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_nearer_of_a_cone_and_a_triangle_is_seen() {
+        let mut geometry = Geometry::default();
+        geometry.cones.add_line([Vertex {
+            place: DVec3::ZERO,
+            radius: 1.0,
+            color: [0.0, 1.0, 0.0],
+        }]);
+        let corner = |x: f64, y: f64, z: f64| Corner {
+            place: dvec3(x, y, z),
+            color: [1.0, 0.0, 0.0],
+        };
+        // Through the sphere on the left, behind it on the right.
+        let corners = [
+            corner(-9.0, -9.0, 3.0),
+            corner(9.0, -9.0, -3.0),
+            corner(0.0, 30.0, 0.0),
+        ];
+        geometry.triangles.add(&corners, [[2, 1, 0]]);
+        let camera = Camera {
+            eye: dvec3(0.0, 0.0, 9.0),
+            target: DVec3::ZERO,
+            up: DVec3::Y,
+            projection: Projection::Orthographic { view_height: 4.0 },
+            zoom: 1.0,
+        };
+        let seen = geometry.seen(&camera, [40, 40], [0.0; 2]);
+        for (i, (pixel, distance)) in seen.pixels.iter().zip(&seen.distances).enumerate() {
+            let [x, y] = [i % 40, i / 40].map(|n| (n as f64 + 0.5) / 10.0 - 2.0);
+            let plane = -x / 3.0;
+            let sphere = (1.0 - x * x - y * y).max(-1.0).sqrt();
+            let (is_sphere, height) = (sphere > plane, sphere.max(plane));
+            assert!((distance - (9.0 - height)).abs() < 1e-12);
+            assert_eq!(pixel[1] > 0.0 && pixel[0] < 0.5, is_sphere, "pixel {i}");
         }
     }
 }

@@ -16,6 +16,7 @@ mod animate_mixed;
 mod animate_stops;
 mod annotate;
 mod annotate_private;
+mod barbs;
 mod bench;
 mod classified;
 mod conformance;
@@ -32,6 +33,7 @@ mod figures;
 mod flow;
 mod flow_drawn;
 mod flow_sections;
+mod ground;
 mod info;
 mod info_structure;
 #[cfg(unix)]

@@ -4,7 +4,7 @@ use crate::shared::{device, volume_of};
 use glam::{DAffine3, DVec3, dvec3};
 use std::sync::Arc;
 use stratavox::camera::{Camera, Projection};
-use stratavox::geometry::{RoundCones, Vertex};
+use stratavox::geometry::{Geometry, RoundCones, Vertex};
 use stratavox::offscreen::{Renderer, check_geometry};
 use stratavox::picture::ColorSpace;
 use stratavox::scene::{Beside, Scene};
@@ -35,7 +35,7 @@ fn fog() -> (Volume, TransferFunction) {
 }
 
 /// A tube that sticks out of the box on one side, and a sphere before it.
-fn cones() -> Arc<RoundCones> {
+fn cones() -> Arc<Geometry> {
     let vertex = |place, radius, color| Vertex {
         place,
         radius,
@@ -47,7 +47,7 @@ fn cones() -> Arc<RoundCones> {
         vertex(dvec3(6.0, 5.0, 3.0), 0.4, [0.0, 0.5, 1.0]),
     ]);
     cones.add_line([vertex(dvec3(5.0, 2.0, 12.0), 0.7, [0.1, 0.9, 0.2])]);
-    Arc::new(cones)
+    Arc::new(cones.into())
 }
 
 fn cameras() -> [Camera; 2] {

@@ -13,7 +13,7 @@ use crate::painter::words;
 use crate::view::View;
 use ash::vk;
 use std::sync::Arc;
-use stratavox::annotate::{Drawn, Seen};
+use stratavox::annotate::{Drawn, GeometryLegend, Seen};
 use stratavox::camera::Camera;
 use stratavox::gpu::{
     Bindings, Blend, Buffer, DepthUse, Gpu, Image, ImageDesc, ImageKind, Load, Memory, RasterDesc,
@@ -168,7 +168,7 @@ pub fn drawn(view: &View, camera: &Camera, extent: [u32; 2], parts: u32) -> Resu
         height_factor: subject.way.height_factor,
         time: f64::from(subject.time),
         projected: None,
-        lines: None,
+        geometry: GeometryLegend::default(),
     };
     let mut annotation = view.annotation.clone();
     // Words are as large in the window, however many pixels the picture has.

@@ -6,7 +6,7 @@ use display::{Display, skipped, texts};
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
-use stratavox::annotate::{Annotation, Facts, Seen};
+use stratavox::annotate::{Annotation, Facts, GeometryLegend, Seen};
 use stratavox::camera::{Camera, Lens, Orbit};
 use stratavox::color::decode_srgb;
 use stratavox::gpu::{DeviceChoice, Headless, Options};
@@ -650,7 +650,7 @@ fn marks_are_laid_over_the_picture_and_their_box_shows_through_the_volume() {
         height_factor: 1.0,
         time: 0.0,
         projected: None,
-        lines: None,
+        geometry: GeometryLegend::default(),
     };
     let marks = annotation.draw(&background, &seen).unwrap();
     let over = |over: [f32; 4], under: [f32; 4]| {

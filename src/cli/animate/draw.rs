@@ -352,7 +352,11 @@ impl Drawing<'_> {
                     .classification
                     .function()
                     .filter(|_| !self.scene.hides_volume()),
-                lines: self.content.lines().and_then(DrawnLines::legend),
+                geometry: self
+                    .content
+                    .lines()
+                    .map(DrawnLines::legend)
+                    .unwrap_or_default(),
                 beside: work.parts.beside(),
                 grid: self.placed.0,
                 height_factor: self.placed.1,

@@ -34,6 +34,7 @@ use super::{
     annotation::annotation,
     exaggerate,
     flags::{Depth, PictureFlags, SceneFlags, context},
+    ground::Ground,
     load,
     memory::{DeviceRoom, Held, fitting},
     output::{self, write_whole},
@@ -242,12 +243,13 @@ impl Animate {
             None if scene_inputs::shows_several(scene, header)? => {
                 progress.stage("read", 0, 1);
                 let settings = &shots[0].settings;
+                let scene = Ground::with_range_of_film(scene)?;
                 let mut first = scene.clone();
                 first.input.time = Some(shots[0].time.to_string());
                 let shown = SceneInputs::of_source(source, &first, settings, device, progress)?;
                 let shown = shown.at_level(&first);
                 progress.note("colours and windows are those of the first time");
-                let together = Together::new(scene, &shown, settings, device.memory()?);
+                let together = Together::new(&scene, &shown, settings, device.memory()?);
                 Content::Together(Box::new(shown), Box::new(together))
             }
             None => {

@@ -73,7 +73,7 @@ impl Together {
             })?;
         }
         let seeds = &self.seeds;
-        let of_film = (!seeds.is_empty()).then_some(FilmTime { time, seeds });
+        let of_film = Some(FilmTime { time, seeds });
         let mut scene = self.scene.clone();
         scene.input.time = Some(before.to_string());
         shown.with_lines(&scene, of_film, &quiet)

@@ -20,6 +20,7 @@ mod inlined;
 mod input;
 mod intermediate;
 mod labels;
+mod level_or_height;
 mod levels;
 mod light;
 mod look;
@@ -57,6 +58,7 @@ pub use gradients::{boundaries_of, refuse_gradients_in};
 pub use inlined::{Inlined, function_in, inlined};
 pub use input::{InputFlags, PHANTOM, relative};
 pub use labels::LabelFlags;
+pub use level_or_height::LevelOrHeight;
 pub use levels::LevelFlags;
 pub use light::{LightFlags, LightWord, ShadingWord};
 pub use look::Look;
@@ -75,7 +77,8 @@ pub use window::WindowWord;
 pub use with::{WithFlags, WithWord};
 
 use super::Error;
-use super::flow::{FlowFlags, FlowStyleFlags};
+use super::flow::{BarbFlags, FlowFlags, FlowStyleFlags};
+use super::ground::GroundFlags;
 use super::map::MapFlags;
 use crate::technique::Settings;
 use clap::Args;
@@ -115,7 +118,11 @@ pub struct SceneFlags {
     #[command(flatten)]
     pub flow_style: FlowStyleFlags,
     #[command(flatten)]
+    pub barbs: BarbFlags,
+    #[command(flatten)]
     pub map: MapFlags,
+    #[command(flatten)]
+    pub ground: GroundFlags,
     #[command(flatten)]
     pub point_look: PointLookFlags,
     #[command(flatten)]
@@ -154,9 +161,21 @@ impl SceneFlags {
         self.with.inline_files()
     }
 
-    /// True where geometry is drawn with the volume: lines of the wind or of the Earth, or points as spheres.
+    /// True where geometry is drawn with the volume: what words ask for, or points as spheres.
     pub fn has_lines(&self) -> bool {
-        self.flow.flow.is_some() || self.map.map.is_some() || self.points_are_spheres()
+        self.geometry_word().is_some() || self.points_are_spheres()
+    }
+
+    /// The first flag that asks for geometry.
+    pub fn geometry_word(&self) -> Option<&'static str> {
+        let words = [
+            ("--flow", self.flow.flow.is_some()),
+            ("--map", self.map.map.is_some()),
+            ("--barbs", self.barbs.barbs.is_some()),
+            ("--ground", self.ground.ground.is_some()),
+        ];
+        let mut given = words.into_iter().filter(|(_, is_given)| *is_given);
+        given.next().map(|(word, _)| word)
     }
 
     /// True where pixels are means of random paths.

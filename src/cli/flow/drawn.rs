@@ -9,16 +9,19 @@
 use super::super::{
     Error,
     flags::{InputFlags, SceneFlags},
+    ground::Ground,
+    map::GroundLine,
     progress::Progress,
 };
+use super::barbs::{self, Barbs};
 use super::colors::LineColors;
 use super::film::{FilmSeed, FilmTime, seeds_of};
 use super::flags::{FlowColor, FlowWord};
 use super::style::StyleWord;
-use crate::annotate::LineLegend;
+use crate::annotate::{ColorLegend, DegreeLine, GeometryLegend};
 use crate::camera::Camera;
 use crate::color::decode_srgb;
-use crate::geometry::{RoundCones, Vertex};
+use crate::geometry::{Geometry, RoundCones, Vertex};
 use crate::points::Points;
 use crate::volume::Header;
 use glam::DVec3;
@@ -37,11 +40,17 @@ const LEVEL: f64 = 1e-9;
 pub struct DrawnLines {
     sets: Vec<LineSet>,
     /// What the colours of the wind mean, where they have several.
-    legend: Option<LineLegend>,
+    legend: Option<ColorLegend>,
     /// Values at the ends of these colours.
     range: [f64; 2],
     /// Where lines of other frames of a film begin.
     seeds: Vec<FilmSeed>,
+    barbs: Option<Barbs>,
+    ground: Option<Ground>,
+    /// What symbols mean, a sentence each.
+    words: Vec<String>,
+    /// Meridians and parallels.
+    degrees: Vec<DegreeLine>,
 }
 
 /// Lines that look alike.
@@ -54,6 +63,8 @@ struct LineSet {
     has_heads: bool,
     /// Of the map, in a section: half of its world thickness.
     on_section: Option<f64>,
+    /// By its radius, over what it lies on.
+    is_lifted: bool,
 }
 
 /// Pixels across a sphere of the largest value, and what the smallest has of it.
@@ -65,7 +76,7 @@ impl DrawnLines {
     pub fn spheres(
         points: &Points,
         is_kept: impl Fn(DVec3) -> bool,
-        legend: LineLegend,
+        legend: ColorLegend,
         pixels: Option<f64>,
     ) -> Self {
         let function = &legend.function;
@@ -88,12 +99,13 @@ impl DrawnLines {
             shares: Some(kept().map(|(_, value)| share(value)).collect()),
             has_heads: false,
             on_section: None,
+            is_lifted: false,
         };
         Self {
             sets: vec![set],
             range: [low, high],
-            seeds: Vec::new(),
             legend: Some(legend),
+            ..Self::default()
         }
     }
 
@@ -101,6 +113,10 @@ impl DrawnLines {
     pub fn with(mut self, more: Self) -> Self {
         self.sets.extend(more.sets);
         self.seeds = more.seeds;
+        self.barbs = more.barbs;
+        self.ground = more.ground;
+        self.words = more.words;
+        self.degrees = more.degrees;
         self.legend = self.legend.or(more.legend);
         self
     }
@@ -114,28 +130,98 @@ impl DrawnLines {
         of_film: Option<FilmTime>,
         progress: &Progress,
     ) -> Result<Option<Self>, Error> {
-        if scene.flow.flow.is_none() && scene.map.map.is_none() {
+        if scene.geometry_word().is_none() {
             return Ok(None);
         }
         let stretch = DVec3::new(1.0, 1.0, height_factor);
         let mut drawn = Self::default();
+        let at = of_film.map(|film| film.time);
+        drawn.ground = Ground::read(scene, header, stretch, at, progress)?;
         if let Some(map) = &scene.map.map {
-            for line in map.lines(header)? {
-                let color = [decode_srgb(line.grey); 3];
-                let places = line.places.iter().map(|&place| (stretch * place, color));
-                drawn.sets.push(LineSet {
-                    lines: vec![places.collect()],
-                    width_pixels: line.width,
-                    shares: None,
-                    has_heads: false,
-                    on_section: scene.section.half_thickness(),
-                });
-            }
+            drawn.add_map(map.lines(header)?, stretch, scene.section.half_thickness());
         }
         if let Some(word) = scene.flow.flow {
-            drawn.add_wind(word, scene, stretch, of_film, progress)?;
+            let of_seeds = of_film.filter(|film| !film.seeds.is_empty());
+            drawn.add_wind(word, scene, stretch, of_seeds, progress)?;
         }
+        drawn.add_barbs(scene, stretch, of_film, progress)?;
         Ok(Some(drawn))
+    }
+
+    /// Lines of the Earth, on the terrain where there is any.
+    fn add_map(&mut self, lines: Vec<GroundLine>, stretch: DVec3, on_section: Option<f64>) {
+        let terrain = self
+            .ground
+            .as_ref()
+            .and_then(|ground| ground.terrain.as_ref());
+        for line in lines {
+            let parts = match terrain {
+                Some(terrain) => terrain.draped(&line.places),
+                None => vec![line.places],
+            };
+            let drawn = parts
+                .iter()
+                .map(|part| part.iter().map(|&place| stretch * place));
+            if let Some((degrees, is_meridian)) = line.degrees {
+                self.degrees.push(DegreeLine {
+                    degrees,
+                    is_meridian,
+                    places: drawn.clone().flatten().collect(),
+                });
+            }
+            let color = [decode_srgb(line.grey); 3];
+            self.sets.push(LineSet {
+                lines: drawn
+                    .map(|part| part.map(|place| (place, color)).collect())
+                    .collect(),
+                width_pixels: line.width,
+                shares: None,
+                has_heads: false,
+                on_section,
+                is_lifted: self.ground.is_some(),
+            });
+        }
+    }
+
+    fn add_barbs(
+        &mut self,
+        scene: &SceneFlags,
+        stretch: DVec3,
+        of_film: Option<FilmTime>,
+        progress: &Progress,
+    ) -> Result<(), Error> {
+        let Some(words) = scene.barbs.barbs else {
+            return Ok(());
+        };
+        let color = scene.barbs.barb_color.map(|color| color.0);
+        let is_on_ground = self.ground.is_some();
+        let color = color.unwrap_or_else(|| match is_on_ground {
+            true => DARK,
+            false => ink_on(scene.picture.background()),
+        });
+        let is_dark = color.iter().sum::<f64>() < 1.5;
+        let casing = is_on_ground.then_some(if is_dark { LIGHT } else { DARK });
+        let linear = |color: [f64; 3]| color.map(|c| decode_srgb(c as f32));
+        let request = barbs::Request {
+            words,
+            input: &input_of_wind(scene),
+            wind: scene.flow.wind_words()?,
+            stretch,
+            color: linear(color),
+            casing: casing.map(linear),
+            of_film,
+        };
+        // What there is to say of the wind was said of its lines.
+        let quiet = Progress::of_part();
+        let of_file = if scene.flow.flow.is_some() {
+            &quiet
+        } else {
+            progress
+        };
+        let barbs = Barbs::read(&request, of_file, progress)?;
+        self.words.push(barbs.words.clone());
+        self.barbs = Some(barbs);
+        Ok(())
     }
 
     fn add_wind(
@@ -148,12 +234,7 @@ impl DrawnLines {
     ) -> Result<(), Error> {
         let (flags, style) = (&scene.flow, &scene.flow_style);
         flags.check_words()?;
-        // What is drawn is seldom the wind. What there is to say of the file was said of the volume.
-        let input = &InputFlags {
-            variable: None,
-            component: None,
-            ..scene.input.clone()
-        };
+        let input = &input_of_wind(scene);
         let quiet = Progress::of_part();
         let traced = flags.traced(word, input, of_film, &quiet, progress)?;
         let one = match flags.color()? {
@@ -189,12 +270,13 @@ impl DrawnLines {
             shares: None,
             has_heads: look == StyleWord::Arrows,
             on_section: None,
+            is_lifted: false,
         });
         self.range = colors.range;
         if word == FlowWord::Stream {
             self.seeds = seeds_of(&traced.lines);
         }
-        self.legend = one.is_none().then(|| LineLegend {
+        self.legend = one.is_none().then(|| ColorLegend {
             function: colors.function(),
             caption: traced.caption,
             unit: traced.unit,
@@ -212,13 +294,21 @@ impl DrawnLines {
         &self.seeds
     }
 
-    /// What their colours mean; `None` where they have one.
-    pub fn legend(&self) -> Option<&LineLegend> {
-        self.legend.as_ref()
+    /// What there is to say of them in a picture.
+    pub fn legend(&self) -> GeometryLegend<'_> {
+        GeometryLegend {
+            lines: self.legend.as_ref(),
+            ground: self
+                .ground
+                .as_ref()
+                .and_then(|ground| ground.legend.as_ref()),
+            words: &self.words,
+            degrees: &self.degrees,
+        }
     }
 
     /// As they are drawn for this camera in a picture of so many pixels.
-    pub fn cones(&self, camera: &Camera, extent_pixels: [u32; 2]) -> RoundCones {
+    pub fn geometry(&self, camera: &Camera, extent_pixels: [u32; 2]) -> Geometry {
         let pixel = pixel_at_target(camera, extent_pixels);
         let forward = camera.frame().forward;
         let is_level = forward.z.abs() > 1.0 - LEVEL;
@@ -229,11 +319,16 @@ impl DrawnLines {
             let height = height.map(|half| camera.target.z - half * forward.z);
             for (i, line) in set.lines.iter().enumerate() {
                 let radius = widest * set.shares.as_ref().map_or(1.0, |shares| shares[i]);
+                let lift = match set.is_lifted {
+                    true => radius * DVec3::Z,
+                    false => DVec3::ZERO,
+                };
                 let vertex = |&(place, color): &(DVec3, [f32; 3])| Vertex {
-                    place: DVec3 {
-                        z: height.unwrap_or(place.z),
-                        ..place
-                    },
+                    place: lift
+                        + DVec3 {
+                            z: height.unwrap_or(place.z),
+                            ..place
+                        },
                     radius,
                     color,
                 };
@@ -246,8 +341,40 @@ impl DrawnLines {
                 }
             }
         }
-        cones
+        let mut geometry = Geometry::from(cones);
+        if let Some(ground) = &self.ground {
+            geometry.triangles = ground.triangles.clone();
+        }
+        if let Some(barbs) = &self.barbs {
+            let forward = camera.frame().forward;
+            barbs.add(&mut geometry, pixel, |place| {
+                match camera.projection.is_perspective() {
+                    true => (camera.eye - place).normalize_or_zero(),
+                    false => -forward,
+                }
+            });
+        }
+        geometry
     }
+}
+
+/// What is drawn is seldom the wind. What there is to say of the file was said of the volume.
+fn input_of_wind(scene: &SceneFlags) -> InputFlags {
+    InputFlags {
+        variable: None,
+        component: None,
+        ..scene.input.clone()
+    }
+}
+
+/// sRGB of symbols.
+const DARK: [f64; 3] = [0.1; 3];
+const LIGHT: [f64; 3] = [0.95; 3];
+
+/// sRGB of symbols that are to be seen: dark on a light background, else light.
+fn ink_on(background: Option<[f64; 4]>) -> [f64; 3] {
+    let is_light = background.is_some_and(|[r, g, b, a]| a > 0.5 && (r + g + b) / 3.0 > 0.6);
+    if is_light { DARK } else { LIGHT }
 }
 
 /// World length of a pixel at the distance of the target.

@@ -22,7 +22,7 @@ pub struct FilmSeed {
 pub struct FilmTime<'a> {
     /// Counted from 0, between two times where it is no whole number.
     pub time: f64,
-    /// The lines of the first frame.
+    /// The lines of the first frame; none where lines are not those of its seeds.
     pub seeds: &'a [FilmSeed],
 }
 

@@ -165,7 +165,6 @@ pub struct FlowFlags {
     #[arg(
         long,
         value_name = "U,V[,W|none]",
-        requires = "flow",
         value_parser = word_of::<WindWords>,
         help_heading = HEADING
     )]
@@ -187,7 +186,7 @@ impl FlowFlags {
     }
 
     /// The variables of the wind, where they are said.
-    pub(super) fn wind_words(&self) -> Result<Option<WindWords>, Error> {
+    pub fn wind_words(&self) -> Result<Option<WindWords>, Error> {
         parsed("--wind", self.wind.as_deref())
     }
 }

@@ -17,6 +17,9 @@ const GROUND: [&str; 2] = ["HGT", "orog"];
 /// And its standard names.
 const GROUND_STANDARD: [&str; 2] = ["surface_altitude", "orography"];
 
+/// Names of masks that are 1 over land and 0 over the sea.
+const LAND_MASKS: [&str; 3] = ["LANDMASK", "lsm", "land_binary_mask"];
+
 /// Heights of the ground in world length, one a column of the grid; `None` where the file has none, or heights are none.
 pub fn heights(variables: &Variables<'_>, header: &Header) -> Result<Option<Vec<f64>>, Error> {
     let metres = match header.length_metres {
@@ -50,6 +53,18 @@ pub fn heights(variables: &Variables<'_>, header: &Header) -> Result<Option<Vec<
     let faces = first.iter().zip(&second);
     let height = |(a, b): (&f64, &f64)| (a + b) / WRF_GRAVITY / metres;
     Ok(Some(faces.map(height).collect()))
+}
+
+/// Where the columns of the grid are sea: 1, land 0; `None` where the file has no mask.
+pub fn sea_of(variables: &Variables<'_>, header: &Header) -> Result<Option<Vec<f64>>, Error> {
+    for name in LAND_MASKS {
+        if has(header, name)
+            && let Some(land) = columns(variables, header, name)?
+        {
+            return Ok(Some(land.into_iter().map(|land| 1.0 - land).collect()));
+        }
+    }
+    Ok(None)
 }
 
 /// Factors of the map at the middles of cells; `None` where the file has none on this grid.

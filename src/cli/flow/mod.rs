@@ -4,6 +4,7 @@
 //! wind -> seeds -> lines -> values -> .vtp, .csv or .glb
 //! ```
 
+mod barbs;
 mod causes;
 mod colors;
 mod components;
@@ -18,10 +19,13 @@ mod value;
 mod variable;
 mod wind;
 
+pub use barbs::BarbFlags;
 pub use drawn::DrawnLines;
 pub use film::{FilmSeed, FilmTime};
 pub use flags::{FlowFlags, FlowWord};
+pub use ground::{heights as ground_heights, sea_of};
 pub use style::FlowStyleFlags;
+pub use variable::{Variables, numbers};
 
 use super::{Error, exaggerate, flags::InputFlags, progress::Progress, signals::Gate};
 use crate::annotate::{caption, unit};
@@ -35,7 +39,6 @@ use flags::FlowColor;
 use glam::DVec3;
 use std::io::{BufWriter, Write};
 use std::path::Path;
-use variable::Variables;
 use wind::Wind;
 
 /// Particles go far apart: they are sown, not spaced.

@@ -1,4 +1,4 @@
-//! `--map coast,borders,graticule`: where the volume lies on the Earth, drawn at sea level.
+//! `--map coast,borders,graticule,terrain`: where the volume lies on the Earth, drawn at sea level or on the terrain.
 //!
 //! ```text
 //! margin      a fifth of the box's larger side around it
@@ -25,16 +25,24 @@ pub struct MapWords {
     borders: bool,
     /// Degrees between lines, 0 where they are chosen.
     graticule: Option<f64>,
+    terrain: bool,
 }
 
 /// The words, none of them filled in.
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct MapFlags {
-    /// Draw the Earth at sea level around the volume: coast, borders, graticule or graticule=DEG
+    /// Draw the Earth at sea level around the volume: coast, borders, graticule or graticule=DEG; and terrain, the heights
+    /// of the ground below it, with these lines on it [default of the list: coast,borders,graticule]
     #[arg(long, value_name = "LIST", num_args = 0..=1, default_missing_value = MapWords::ALL, help_heading = "Lines")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub map: Option<MapWords>,
+}
+
+/// Whether a place of the world lies in the southern hemisphere; none does where the latitude is not known.
+pub fn is_southern(header: &Header) -> impl Fn(DVec3) -> bool {
+    let projection = Projection::of(header);
+    move |place| projection.is_some_and(|map| map.latitude([place.x, place.y]) < 0.0)
 }
 
 /// A line on the ground, world, before heights are exaggerated.
@@ -46,6 +54,8 @@ pub struct GroundLine {
     pub grey: f32,
     /// Pixels.
     pub width: f64,
+    /// Of a meridian or a parallel, and whether it is a meridian.
+    pub degrees: Option<(f64, bool)>,
 }
 
 /// Of the larger side of the box.
@@ -73,11 +83,19 @@ impl MapWords {
         Projection::of(header).is_some_and(off)
     }
 
+    /// True where heights of the ground are drawn.
+    pub fn has_terrain(&self) -> bool {
+        self.terrain
+    }
+
     /// The lines around a volume.
     ///
     /// # Errors
     /// Where it has no place on the Earth, or none is known.
     pub fn lines(&self, header: &Header) -> Result<Vec<GroundLine>, Error> {
+        if !(self.coast || self.borders || self.graticule.is_some()) {
+            return Ok(Vec::new());
+        }
         let projection = Projection::of(header).ok_or_else(|| {
             Error::usage(
                 "--map: the volume has no place on the Earth: wanted latitudes and longitudes, or a WRF file with MAP_PROJ, \
@@ -101,11 +119,14 @@ impl MapWords {
         let area = Area::around(&grid);
         let mut lines = Vec::new();
         if let Some(degrees) = self.graticule {
-            area.add(
-                &mut lines,
-                &graticule(&projection, &area, degrees),
-                GRATICULE,
-            );
+            for (line, degrees) in graticule(&area, degrees) {
+                let first = lines.len();
+                let places = projected(&projection, &area, [line.as_slice()].into_iter());
+                area.add(&mut lines, &places, GRATICULE);
+                for line in &mut lines[first..] {
+                    line.degrees = Some(degrees);
+                }
+            }
         }
         let mut add = |all: &Lines, look| {
             let places = all.iter().map(|line| line.as_slice());
@@ -119,6 +140,11 @@ impl MapWords {
         }
         Ok(lines)
     }
+}
+
+/// World height of what lies on the ground: sea level, or the face of the box nearest to it.
+pub fn ground_height(grid: &Grid) -> f64 {
+    Area::around(grid).height
 }
 
 /// Places on the map, a line each.
@@ -167,6 +193,7 @@ impl Area {
                         places,
                         grey,
                         width,
+                        degrees: None,
                     });
                 }
             };
@@ -248,8 +275,11 @@ fn projected<'a>(
     all
 }
 
+/// Longitudes and latitudes along a line, its own degrees, and whether it is a meridian.
+type GraticuleLine = (Vec<[f64; 2]>, (f64, bool));
+
 /// Meridians and parallels.
-fn graticule(projection: &Projection, area: &Area, degrees: f64) -> Flat {
+fn graticule(area: &Area, degrees: f64) -> Vec<GraticuleLine> {
     let kilometres = (area.high[1] - area.low[1]).max(area.width());
     let span = kilometres / 111.2;
     let step = match degrees > 0.0 {
@@ -264,26 +294,20 @@ fn graticule(projection: &Projection, area: &Area, degrees: f64) -> Flat {
         let count = ((to - from) / FINE).ceil() as u32;
         (0..=count).map(move |i| from + (to - from) * f64::from(i) / f64::from(count))
     };
-    let mut lines: Lines = Vec::new();
+    let mut lines = Vec::new();
     let count = (180.0 / step).floor() as i32;
     for i in -count..=count {
         let longitude = f64::from(i) * step;
-        lines.push(
-            fine(-85.0, 85.0)
-                .map(|latitude| [longitude, latitude])
-                .collect(),
-        );
+        let line = fine(-85.0, 85.0).map(|latitude| [longitude, latitude]);
+        lines.push((line.collect(), (longitude, true)));
     }
     let count = (85.0 / step).floor() as i32;
     for i in -count..=count {
         let latitude = f64::from(i) * step;
-        lines.push(
-            fine(-180.0, 180.0)
-                .map(|longitude| [longitude, latitude])
-                .collect(),
-        );
+        let line = fine(-180.0, 180.0).map(|longitude| [longitude, latitude]);
+        lines.push((line.collect(), (latitude, false)));
     }
-    projected(projection, area, lines.iter().map(Vec::as_slice))
+    lines
 }
 
 impl FromStr for MapWords {
@@ -299,6 +323,7 @@ impl FromStr for MapWords {
             match (name, number) {
                 ("coast", None) => words.coast = true,
                 ("borders", None) => words.borders = true,
+                ("terrain", None) => words.terrain = true,
                 ("graticule", None) => words.graticule = Some(0.0),
                 ("graticule", Some(number)) => {
                     let degrees = number.parse().ok();
@@ -309,7 +334,7 @@ impl FromStr for MapWords {
                 }
                 _ => {
                     return Err(format!(
-                        "wanted coast, borders, graticule or graticule=DEG, found {word:?}"
+                        "wanted coast, borders, graticule, graticule=DEG or terrain, found {word:?}"
                     ));
                 }
             }
@@ -328,6 +353,7 @@ impl fmt::Display for MapWords {
             self.coast.then(|| "coast".to_owned()),
             self.borders.then(|| "borders".to_owned()),
             graticule,
+            self.terrain.then(|| "terrain".to_owned()),
         ];
         let words: Vec<String> = words.into_iter().flatten().collect();
         f.write_str(&words.join(","))

@@ -83,6 +83,42 @@ impl Projection {
         (off > MOST_OFF * corner.step).then_some(off)
     }
 
+    /// The latitude in degrees of x and y of the world.
+    pub fn latitude(&self, [x, y]: [f64; 2]) -> f64 {
+        let Self::Map {
+            kind,
+            true_latitudes,
+            origin,
+            ..
+        } = *self
+        else {
+            let Self::Degrees([_, degree]) = *self else {
+                return f64::NAN;
+            };
+            return y / degree;
+        };
+        let [x, y] = [x + origin[0], y + origin[1]];
+        let [p1, p2] = true_latitudes.map(f64::to_radians);
+        // The latitude of tan(45 + p / 2).
+        let of_tan = |tan: f64| 2.0 * tan.atan() - std::f64::consts::FRAC_PI_2;
+        let latitude = match kind {
+            MapKind::Mercator => of_tan((y / (RADIUS * p1.cos())).exp()),
+            MapKind::Lambert => {
+                let n = cone(p1, p2);
+                let r = x.hypot(y);
+                let ratio = RADIUS * p1.cos() / (n.abs() * r);
+                of_tan(half_tan(p1) * ratio.powf(1.0 / n))
+            }
+            MapKind::PolarStereographic => {
+                let side = p1.signum();
+                let far = x.hypot(y) / (RADIUS * (1.0 + p1.abs().sin()));
+                side * (std::f64::consts::FRAC_PI_2 - 2.0 * far.atan())
+            }
+            MapKind::LatitudeLongitude => f64::NAN,
+        };
+        latitude.to_degrees()
+    }
+
     /// x and y of a longitude and a latitude in degrees, world; `None` where the map has no such place.
     pub fn place(&self, [longitude, latitude]: [f64; 2]) -> Option<[f64; 2]> {
         let Self::Map {
@@ -100,18 +136,14 @@ impl Projection {
         let l = ((longitude - middle + 180.0).rem_euclid(360.0) - 180.0).to_radians();
         let p = latitude.to_radians();
         let [p1, p2] = true_latitudes.map(f64::to_radians);
-        let tan = |p: f64| (std::f64::consts::FRAC_PI_4 + 0.5 * p).tan();
         let [x, y] = match kind {
             MapKind::Mercator => {
                 let scale = RADIUS * p1.cos();
-                [scale * l, scale * tan(p).ln()]
+                [scale * l, scale * half_tan(p).ln()]
             }
             MapKind::Lambert => {
-                let n = match (p1 - p2).abs() < 1e-9 {
-                    true => p1.sin(),
-                    false => (p1.cos() / p2.cos()).ln() / (tan(p2) / tan(p1)).ln(),
-                };
-                let r = RADIUS * p1.cos() / n * (tan(p1) / tan(p)).powf(n);
+                let n = cone(p1, p2);
+                let r = RADIUS * p1.cos() / n * (half_tan(p1) / half_tan(p)).powf(n);
                 [r * (n * l).sin(), -r * (n * l).cos()]
             }
             MapKind::PolarStereographic => {
@@ -130,10 +162,50 @@ impl Projection {
     }
 }
 
+/// tan(45 + p / 2).
+fn half_tan(p: f64) -> f64 {
+    (std::f64::consts::FRAC_PI_4 + 0.5 * p).tan()
+}
+
+/// n of Lambert's cone.
+fn cone(p1: f64, p2: f64) -> f64 {
+    match (p1 - p2).abs() < 1e-9 {
+        true => p1.sin(),
+        false => (p1.cos() / p2.cos()).ln() / (half_tan(p2) / half_tan(p1)).ln(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::volume::MapCorner;
+
+    #[test]
+    fn the_equator_lies_between_the_latitudes_of_both_sides() {
+        for (kind, true_latitudes) in [
+            (MapKind::Mercator, [0.0; 2]),
+            (MapKind::Lambert, [-30.0, -60.0]),
+            (MapKind::Lambert, [25.0, 25.0]),
+            (MapKind::PolarStereographic, [-60.0; 2]),
+            (MapKind::PolarStereographic, [70.0; 2]),
+        ] {
+            let map = MapProjection {
+                kind,
+                true_latitudes: true_latitudes.map(Some),
+                standard_longitude: Some(20.0),
+                center: Some([-3.0, 25.0]),
+                corner: None,
+            };
+            let projection = Projection::of_map(&map).expect("a map");
+            for latitude in [-20.0, -1.0, 0.0, 1.0, 30.0] {
+                let place = projection.place([33.0, latitude]).expect("a place");
+                let found = projection.latitude(place);
+                assert!((found - latitude).abs() < 1e-9, "{kind:?}: {found}");
+            }
+        }
+        let degrees = Projection::Degrees([100.0, 111.0]);
+        assert_eq!(degrees.latitude([7.0, -222.0]), -2.0);
+    }
 
     /// By PROJ 9 (pyproj), +R=6370000: 5 degrees to the north and 7 to the east of a place, from it, in kilometres.
     #[test]
@@ -201,6 +273,7 @@ mod tests {
             let found = projection
                 .place([longitude + 7.0, latitude + 5.0])
                 .expect("a place");
+            assert!((projection.latitude(found) - latitude - 5.0).abs() < 1e-9);
             for k in [0, 1] {
                 // A tenth of a millimetre.
                 assert!((found[k] - wanted[k]).abs() < 1e-7, "{kind:?} {found:?}");

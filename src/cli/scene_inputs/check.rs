@@ -82,21 +82,23 @@ fn check_with(scene: &SceneFlags, mode: Mode) -> Result<(), Error> {
 
 /// What lines do not go with.
 fn check_lines(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
+    if scene.flow.wind.is_some() && scene.flow.flow.is_none() && scene.barbs.barbs.is_none() {
+        return Err(Error::usage(
+            "--wind names a wind that nothing draws",
+            "--flow stream draws its lines, --barbs its barbs",
+        ));
+    }
     if !scene.has_lines() {
         return match scene.flow_style.hide_volume {
             true => Err(Error::usage(
-                "--hide-volume leaves nothing without --flow or --map",
+                "--hide-volume leaves nothing without --flow, --map, --barbs or --ground",
                 "leave it out",
             )),
             false => Ok(()),
         };
     }
     scene.flow.check_words()?;
-    let word = match scene.flow.flow {
-        Some(_) => "--flow",
-        None if scene.map.map.is_some() => "--map",
-        None => "--points-as spheres",
-    };
+    let word = scene.geometry_word().unwrap_or("--points-as spheres");
     let refused =
         |problem: &str, hint: &str| Err(Error::usage(format!("{word} {problem}"), hint.to_owned()));
     if let Err(problem) = check_geometry(settings) {

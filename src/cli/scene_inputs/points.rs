@@ -1,7 +1,7 @@
 //! Scattered points, read, and how their values are seen.
 
 use super::{Others, SceneInputs};
-use crate::annotate::{LineLegend, caption, unit};
+use crate::annotate::{ColorLegend, caption, unit};
 use crate::cli::{
     Error, exaggerate,
     flags::{Classification, ClassificationFlags, SceneFlags, ShadingWord, summary},
@@ -61,7 +61,7 @@ pub fn spheres(
     let mut classification = classification(&scene.classification, &volume, mode)?;
     let lines = match &mut classification {
         Classification::Function(function) => {
-            let legend = LineLegend {
+            let legend = ColorLegend {
                 function: function.clone(),
                 caption: caption(&header),
                 unit: unit(&header),

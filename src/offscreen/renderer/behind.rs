@@ -11,7 +11,7 @@
 use super::Renderer;
 use crate::camera::{Camera, DepthConvention, HostDepth};
 use crate::color::encode_srgb;
-use crate::geometry::{RoundCones, Seen};
+use crate::geometry::{Geometry, Seen};
 use crate::gpu::{
     self, Buffer, Gpu, Headless, Image, ImageDesc, ImageKind, Memory, Region, Use, buffer_to_image,
     image_barrier,
@@ -30,7 +30,7 @@ const NOTHING: f32 = 1e30;
 /// Geometry, and what of it is seen through one place in each pixel.
 #[derive(Debug)]
 pub(super) struct Behind {
-    geometry: Arc<RoundCones>,
+    geometry: Arc<Geometry>,
     /// What was seen last, from where, and cut by which planes.
     seen: Option<(SeenBy, Seen)>,
     /// Its depths on the device.
@@ -49,7 +49,7 @@ struct DepthImage {
 
 impl Renderer<'_> {
     /// From here on pictures show this geometry too, `None`: none. It takes rays through the same place of all pixels.
-    pub fn set_geometry(&mut self, geometry: Option<Arc<RoundCones>>) {
+    pub fn set_geometry(&mut self, geometry: Option<Arc<Geometry>>) {
         self.behind = geometry.map(|geometry| Behind {
             geometry,
             seen: None,

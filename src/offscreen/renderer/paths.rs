@@ -194,7 +194,6 @@ fn luminance([r, g, b, _]: [f64; 4]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::real::Real;
 
     /// Blocks whose pixels are 1 or 3 by chance: of a mean of n, 1 / n; against 4.
     #[test]
@@ -202,9 +201,11 @@ mod tests {
         let mut sums = Sums::default();
         for block in 0..64 {
             let pixel = |i: u32| {
-                let word = (i * 2_654_435_761).rotate_left(block) ^ (block * 40_503 + i * 97);
-                let bit = (word.wrapping_mul(2_246_822_519) >> 17) & 1;
-                [1.0 + 2.0 * f32::from_f64(f64::from(bit)); 4]
+                // A mixer of whole numbers (Wellons' lowbias32, 2018).
+                let mut x = i + 4096 * block;
+                x = (x ^ (x >> 16)).wrapping_mul(0x7feb_352d);
+                x = (x ^ (x >> 15)).wrapping_mul(0x846c_a68b);
+                [if (x >> 16) & 1 == 0 { 1.0 } else { 3.0 }; 4]
             };
             let found: Vec<_> = (0..4096).map(pixel).collect();
             sums.add(&found, 4);

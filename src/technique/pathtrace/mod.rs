@@ -232,6 +232,7 @@ impl View<'_> {
         fields.path_sky_turn = (path.sky_turn_degrees / 360.0) as f32;
         fields.path_sky_size = path.sky_picture.as_ref().map_or([0; 2], SkyPicture::size);
         fields.path_sky_shown = path.shows_sky.into();
+        fields.draws_all_tiles = (path.shows_sky || path.lens.is_some()).into();
         fields.path_phase = path.phase.numbers();
         fields.path_density = path.density as f32;
         fields.path_albedo = path.albedo as f32;

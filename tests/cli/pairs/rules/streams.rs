@@ -18,7 +18,7 @@ pub const RULES: &[Rule] = &[
         "bricks of all volumes at once: n times the memory for n volumes, and grids of their own cut across bricks",
     ),
     not_built(
-        "--stream is not for --flow and --map",
+        "--stream is not for --flow, --map, --barbs and --ground",
         "the depth of lines would be read by each brick: 4 bytes a pixel and brick",
     ),
     not_built(

@@ -1,0 +1,100 @@
+//! What geometry beside a volume means: bars for its colours, sentences for its symbols.
+
+use super::{Error, Seen, bar::Bar, degrees::DegreeLine, sheet::Sheet};
+use crate::{figure::Anchor, technique::Mode, transfer::TransferFunction};
+
+/// What colours of geometry mean.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ColorLegend {
+    /// Colours of values.
+    pub function: TransferFunction,
+    /// What the values are.
+    pub caption: String,
+    /// As the file has it.
+    pub unit: Option<String>,
+}
+
+/// What there is to say of the geometry in a picture.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct GeometryLegend<'a> {
+    /// What colours lines or spheres.
+    pub lines: Option<&'a ColorLegend>,
+    /// What colours the ground.
+    pub ground: Option<&'a ColorLegend>,
+    /// What symbols mean, a sentence each.
+    pub words: &'a [String],
+    /// Meridians and parallels.
+    pub degrees: &'a [DegreeLine],
+}
+
+/// How much of the picture's width a sentence takes.
+const WIDEST: f64 = 0.55;
+
+/// Which of so many bars that of the volume is.
+pub(super) fn slot(seen: &Seen) -> [usize; 2] {
+    [0, count(seen).max(1)]
+}
+
+fn own(seen: &Seen) -> usize {
+    usize::from(seen.function.is_some() || seen.projected.is_some())
+}
+
+fn count(seen: &Seen) -> usize {
+    let others = [seen.geometry.lines, seen.geometry.ground];
+    own(seen) + others.into_iter().flatten().count()
+}
+
+/// A bar each of lines and of the ground, below that of the volume; where they begin.
+pub(super) fn bars(sheet: &mut Sheet, seen: &Seen) -> Result<Option<f64>, Error> {
+    let legends = [seen.geometry.lines, seen.geometry.ground];
+    let mut left: Option<f64> = None;
+    for (nth, legend) in legends.into_iter().flatten().enumerate() {
+        let bar = Bar {
+            function: &legend.function,
+            depth: None,
+            caption: &legend.caption,
+            unit: legend.unit.as_deref(),
+            is_log: false,
+            levels: Vec::new(),
+            slot: [own(seen) + nth, count(seen)],
+        };
+        let own = bar.draw(sheet)?;
+        left = [left, own].into_iter().flatten().reduce(f64::min);
+    }
+    Ok(left)
+}
+
+/// The sentences, in the lower right above what stands there.
+pub(super) fn words(sheet: &mut Sheet, seen: &Seen, has_source: bool) {
+    let ([width, height], em) = (sheet.size(), sheet.em);
+    let levels = match seen.settings.mode {
+        Mode::Iso => seen.settings.per_mode.levels.len(),
+        _ => 0,
+    };
+    let below = match levels > 0 || has_source {
+        true => 2.6 + 1.4 * levels as f64,
+        false => 1.0,
+    };
+    let words = seen.geometry.words.iter().map(|words| unparted(words));
+    let lines = words.flat_map(|words| sheet.wrapped(&words, 1.0, WIDEST * width, 4));
+    let lines: Vec<String> = lines.collect();
+    for (at, line) in lines.iter().rev().enumerate() {
+        let y = height - (below + 1.4 * at as f64) * em;
+        sheet.text_on_ground([width - em, y], line, 1.0, Anchor::End);
+    }
+}
+
+/// A number and its unit stay on one line.
+fn unparted(words: &str) -> String {
+    let mut kept = String::with_capacity(words.len());
+    let mut follows_digit = false;
+    for letter in words.chars() {
+        kept.push(if letter == ' ' && follows_digit {
+            '\u{a0}'
+        } else {
+            letter
+        });
+        follows_digit = letter.is_ascii_digit();
+    }
+    kept
+}
