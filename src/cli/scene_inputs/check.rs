@@ -107,6 +107,19 @@ fn check_lines(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
             "leave them out",
         );
     }
+    let stands_elsewhere = [
+        ("--barbs", scene.barbs.barbs.is_some()),
+        ("--ground", scene.ground.ground.is_some()),
+    ];
+    let stands_elsewhere = stands_elsewhere.into_iter().find(|(_, is_there)| *is_there);
+    if let (true, Some((word, _))) = (scene.section.section.is_some(), stands_elsewhere) {
+        return Err(Error::usage(
+            format!(
+                "{word} with --section: it stands at a height of its own, and not in the plane"
+            ),
+            "leave out one of them; --view top looks down on both",
+        ));
+    }
     if scene.section.section.is_some() && scene.points_are_spheres() {
         return refused(
             "with --section: a section is of a volume, and spheres are symbols beside it",

@@ -12,8 +12,8 @@ use stratavox::technique::pathtrace::{Lens, PathTracing};
 fn a_point_out_of_focus_is_a_circle_as_wide_as_a_thin_lens_says() {
     const SIDE: f64 = 0.04;
     let (z, focus, radius) = (2.0, 3.0, 0.3);
-    let place = DAffine3::from_translation(dvec3(-0.5 * SIDE, -0.5 * SIDE, -0.5 * SIDE))
-        * DAffine3::from_scale(DVec3::splat(SIDE / 4.0));
+    let place = DAffine3::from_translation(dvec3(-0.5 * SIDE, -0.5 * SIDE, 0.0))
+        * DAffine3::from_scale(dvec3(0.25 * SIDE, 0.25 * SIDE, 1e-4));
     let volume = volume_of([4; 3], place, |_| 1.0);
     let function = matter([1.0; 3], &[(0.0, 8.0)]);
     let camera = Camera {
@@ -48,11 +48,12 @@ fn a_point_out_of_focus_is_a_circle_as_wide_as_a_thin_lens_says() {
         moments[0] += f64::from(p[3]);
         moments[1] += f64::from(p[3]) * (x * x + y * y) * pixel * pixel;
     }
-    // A disc of this radius has the mean square r^2 / 2; the plate's own is small beside it.
-    let r = radius * (z - focus).abs() / z;
+    // The mean square of a disc is r^2 / 2, and the plate's own of a square w^2 / 6.
+    let (r, own) = (radius * (z - focus).abs() / z, SIDE * focus / z);
+    let wanted = (r * r + own * own / 3.0).sqrt();
     let found = (2.0 * moments[1] / moments[0]).sqrt();
-    println!("{found} of {r}");
-    assert!((found / r - 1.0).abs() < 0.02, "{found} {r}");
+    println!("{found} of {wanted}");
+    assert!((found / wanted - 1.0).abs() < 0.02, "{found} {wanted}");
     let [covered, through_pinhole] = [&blurred, &sharp].map(|picture| mean(picture, 3)[0]);
     assert!(
         (covered / through_pinhole - 1.0).abs() < 0.05,

@@ -53,7 +53,7 @@ fn a_picture_ends_where_its_noise_is_low() {
         ..lit()
     };
     let (ended, traced) = of(PathTracing {
-        noise: Some(0.05),
+        noise: Some(0.2),
         ..paths(4096, 0)
     });
     let noise = traced.noise.expect("several blocks");
@@ -61,22 +61,23 @@ fn a_picture_ends_where_its_noise_is_low() {
         traced.paths.is_power_of_two() && traced.paths >= 16,
         "{traced:?}"
     );
-    assert!(noise <= 0.05 && traced.paths < 4096, "{traced:?}");
+    assert!(noise <= 0.2 && traced.paths < 4096, "{traced:?}");
     let (same, _) = of(paths(traced.paths, 0));
     assert!(ended == same);
     let (_, before) = of(paths(traced.paths / 2, 0));
     assert!(
-        traced.paths == 16 || before.noise.is_some_and(|noise| noise > 0.05),
+        traced.paths == 16 || before.noise.is_some_and(|noise| noise > 0.2),
         "{before:?}"
     );
-    let (truth, _) = of(paths(16 * traced.paths, 9));
+    let (truth, _) = of(paths(8 * traced.paths, 9));
     let y = |p: &[f32; 4]| {
         0.2126 * f64::from(p[0]) + 0.7152 * f64::from(p[1]) + 0.0722 * f64::from(p[2])
     };
     let pairs = || ended.pixels.iter().zip(&truth.pixels);
     let off: f64 = pairs().map(|(a, b)| (y(a) - y(b)).powi(2)).sum();
     let light: f64 = pairs().map(|(_, b)| y(b).powi(2)).sum();
-    let error = (off / light).sqrt();
+    // Both have noise.
+    let error = (off / light / (1.0 + 1.0 / 8.0)).sqrt();
     println!("{traced:?}, error {error}");
     assert!((error / noise - 1.0).abs() < 0.15, "{error} {noise}");
 }

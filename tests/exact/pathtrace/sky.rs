@@ -45,7 +45,7 @@ fn a_layer_scatters_the_light_of_a_sky_with_a_sun() {
     let g = 0.4;
     for phase in [Phase::Isotropic, Phase::HenyeyGreenstein(g)] {
         let path = PathTracing {
-            samples: 64,
+            samples: 32,
             bounces: Some(1),
             phase,
             sky: [0.7; 3],
@@ -71,7 +71,7 @@ fn a_layer_scatters_the_light_of_a_sky_with_a_sun() {
                 m / (m - mu) * ((-depth / m).exp() - (-depth / mu).exp())
             }
         };
-        let (rows, columns) = (1200, 1200);
+        let (rows, columns) = (600, 600);
         for channel in 0..2 {
             let mut wanted = 0.0;
             for j in 0..rows {
@@ -97,7 +97,7 @@ fn white_matter_under_a_white_picture_is_white_in_the_mean() {
     let function = matter([1.0; 3], &[(0.0, 0.0), (0.4, 1.5), (1.0, 0.2)]);
     for (surface, f0) in [(0.0, 0.0), (3.0, 0.0)] {
         let settings = settings(PathTracing {
-            samples: 64,
+            samples: 16,
             surface,
             f0,
             sky: [1.0; 3],
@@ -134,7 +134,7 @@ fn a_turned_sky_is_a_turned_world() {
             camera.up = turn.transform_vector3(dvec3(0.0, 1.0, 0.0));
         }
         let settings: Settings = settings(PathTracing {
-            samples: 64,
+            samples: 16,
             sky: [1.0; 3],
             sky_picture: Some(picture.clone()),
             sky_turn_degrees: if quarter { 90.0 } else { 0.0 },
