@@ -123,7 +123,7 @@ fn a_turned_sky_is_a_turned_world() {
     let mut seen = Vec::new();
     for quarter in [false, true] {
         let mut volume = blobs();
-        let mut camera = camera.clone();
+        let mut camera = camera;
         if quarter {
             let turn = glam::DAffine3::from_rotation_z(0.5 * PI);
             volume.world_from_voxel = turn * volume.world_from_voxel;
