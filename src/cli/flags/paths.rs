@@ -25,7 +25,7 @@ pub struct PathFlags {
     #[arg(long, value_name = "PART", value_parser = positive, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub noise: Option<f64>,
-    /// End after so many seconds of tracing, with the paths that there are: the picture then hangs on the machine
+    /// End after so many seconds of tracing, with the paths that there are: the picture then depends on the machine
     #[arg(long, value_name = "S", value_parser = positive, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seconds: Option<f64>,
