@@ -290,9 +290,18 @@ fn every_command_of_the_page_of_annotation_runs() {
 #[test]
 fn every_command_of_the_page_of_weather_runs() {
     let (folder, _, lines) = run_page("docs/weather.md");
-    assert_eq!(lines, 7);
-    let names = ["vapor.png", "wind.png", "storm.gif", "updraft.vtp"];
-    for name in names.into_iter().chain(["speed.png", "speed.nrrd"]) {
+    assert_eq!(lines, 9);
+    let pictures = [
+        "vapor.png",
+        "wind.png",
+        "barbs.png",
+        "ground.png",
+        "speed.png",
+    ];
+    for name in pictures
+        .into_iter()
+        .chain(["storm.gif", "updraft.vtp", "speed.nrrd"])
+    {
         assert!(folder.path(name).exists(), "{name}");
     }
 }
@@ -300,8 +309,8 @@ fn every_command_of_the_page_of_weather_runs() {
 #[test]
 fn every_command_of_the_page_of_path_tracing_runs() {
     let (folder, _, lines) = run_page("docs/pathtrace.md");
-    assert_eq!(lines, 3);
-    for name in ["head.png", "lit.png", "once.png"] {
+    assert_eq!(lines, 4);
+    for name in ["head.png", "lit.png", "once.png", "near.png"] {
         assert!(folder.path(name).exists(), "{name}");
     }
 }
