@@ -101,11 +101,6 @@ fn what_cannot_be_opaque_by_other_numbers_says_so() {
             2,
             "--preintegrated",
         ),
-        (
-            format!("{storm} {by} --ambient-occlusion 1"),
-            2,
-            "--ambient-occlusion",
-        ),
         (format!("{storm} {by} --filter cubic"), 2, "--filter"),
         (format!("{storm} {by} --tf widgets.json"), 2, "widgets"),
         (
