@@ -21,7 +21,7 @@ fn fifth_power(x: f32) -> f32 {
     return q * q * x;
 }
 
-// 1 - f0 at right angles to 1 at grazing ones.
+// Of light that is mirrored: f0 straight across, 1 along the surface.
 fn fresnel(cosine: f32) -> f32 {
     return frame.path_f0 + (1.0 - frame.path_f0) * fifth_power(max(1.0 - cosine, 0.0));
 }

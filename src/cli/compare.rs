@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 #[command(after_help = "Example:\n  \
     stratavox render phantom:head -o a.png && stratavox compare a.png a.png --at-most 0")]
 pub struct Compare {
-    /// What was wanted: a .png, .exr or .npy
+    /// What was wanted: a .png, .exr, .hdr or .npy
     #[arg(value_name = "A")]
     wanted: PathBuf,
     /// What was found

@@ -213,9 +213,7 @@ impl Render {
             camera, settings, ..
         } = view;
         renderer.watch(|part| progress.part(part));
-        if scene.traces_paths() {
-            renderer.end_paths_when(gate.ends_early());
-        }
+        renderer.end_paths_by(gate);
         let mut frames = Vec::new();
         let mut last = None;
         for done in 0..self.repeat {
@@ -275,6 +273,12 @@ impl Render {
         let picture = panels.together(pictures, background);
 
         progress.stage("write", 0, 1);
+        let own = &self.scene.picture;
+        if format != PictureFormat::Png && (own.tone.is_some() || own.exposure.is_some()) {
+            progress.note(
+                "--tone and --exposure have no effect on this file, which holds light as it is",
+            );
+        }
         let options = WriteOptions {
             bit_depth: scene.picture.bit_depth(),
             force: self.force,

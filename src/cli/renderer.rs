@@ -20,7 +20,6 @@ use crate::{
     volume::{Denoise, Volume, labels::labels_of},
 };
 use std::panic::resume_unwind;
-use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Instant;
@@ -267,10 +266,11 @@ impl<'a> Renderer<'a> {
         }
     }
 
-    /// From here on a picture of paths ends early once `asked` is true; those of the CPU references go on.
-    pub fn end_paths_when(&mut self, asked: Arc<AtomicBool>) {
-        if let Some(renderer) = &mut self.on_device {
-            renderer.end_paths_when(asked);
+    /// From here on the first interrupt ends a picture of paths early; one of the CPU references it stops.
+    pub fn end_paths_by(&mut self, gate: &Gate) {
+        let traces = self.job.settings.technique.traces_paths();
+        if let Some(renderer) = self.on_device.as_mut().filter(|_| traces) {
+            renderer.end_paths_when(gate.ends_early());
         }
     }
 

@@ -254,6 +254,28 @@ mod tests {
         }
     }
 
+    /// Of radius 1 in the origin.
+    fn ball() -> RoundCones {
+        let mut cones = RoundCones::default();
+        cones.add_line([Vertex {
+            place: DVec3::ZERO,
+            radius: 1.0,
+            color: [0.5; 3],
+        }]);
+        cones
+    }
+
+    /// Straight down on the origin, a tenth a pixel of 40.
+    fn above() -> Camera {
+        Camera {
+            eye: dvec3(0.0, 0.0, 9.0),
+            target: DVec3::ZERO,
+            up: DVec3::Y,
+            projection: Projection::Orthographic { view_height: 4.0 },
+            zoom: 1.0,
+        }
+    }
+
     fn projections() -> [Projection; 2] {
         [
             Projection::Orthographic { view_height: 4.0 },
@@ -307,22 +329,11 @@ mod tests {
 
     #[test]
     fn planes_leave_a_ball_its_cap_and_its_cut() {
-        let mut cones = RoundCones::default();
-        cones.add_line([Vertex {
-            place: DVec3::ZERO,
-            radius: 1.0,
-            color: [0.5; 3],
-        }]);
-        let camera = Camera {
-            eye: dvec3(0.0, 0.0, 9.0),
-            target: DVec3::ZERO,
-            up: DVec3::Y,
-            projection: Projection::Orthographic { view_height: 4.0 },
-            zoom: 1.0,
-        };
+        let cones = ball();
+        let camera = above();
         // Between heights 0.2 and 0.5, to the right of 0.1.
         let planes = [(DVec3::Z, 0.2), (DVec3::NEG_Z, -0.5), (DVec3::X, 0.1)];
-        let seen = Geometry::from(cones.clone()).seen_cut(&camera, [40, 40], [0.0; 2], &planes);
+        let seen = Geometry::from(cones).seen_cut(&camera, [40, 40], [0.0; 2], &planes);
         let facing = AMBIENT + DIFFUSE;
         let (mut cut, mut cap) = (0, 0);
         for (i, (pixel, distance)) in seen.pixels.iter().zip(&seen.distances).enumerate() {
@@ -347,19 +358,8 @@ mod tests {
 
     #[test]
     fn a_sphere_is_a_disc_as_large_as_it_is_and_as_bright_as_its_law() {
-        let mut cones = RoundCones::default();
-        cones.add_line([Vertex {
-            place: DVec3::ZERO,
-            radius: 1.0,
-            color: [0.5; 3],
-        }]);
-        let camera = Camera {
-            eye: dvec3(0.0, 0.0, 9.0),
-            target: DVec3::ZERO,
-            up: DVec3::Y,
-            projection: Projection::Orthographic { view_height: 4.0 },
-            zoom: 1.0,
-        };
+        let cones = ball();
+        let camera = above();
         let seen = Geometry::from(cones).seen(&camera, [40, 40], [0.0; 2]);
         for (i, (pixel, distance)) in seen.pixels.iter().zip(&seen.distances).enumerate() {
             let [x, y] = [i % 40, i / 40].map(|n| (n as f64 + 0.5) / 10.0 - 2.0);
@@ -457,13 +457,7 @@ mod tests {
             corner(0.0, 30.0, 0.0),
         ];
         geometry.triangles.add(&corners, [[2, 1, 0]]);
-        let camera = Camera {
-            eye: dvec3(0.0, 0.0, 9.0),
-            target: DVec3::ZERO,
-            up: DVec3::Y,
-            projection: Projection::Orthographic { view_height: 4.0 },
-            zoom: 1.0,
-        };
+        let camera = above();
         let seen = geometry.seen(&camera, [40, 40], [0.0; 2]);
         for (i, (pixel, distance)) in seen.pixels.iter().zip(&seen.distances).enumerate() {
             let [x, y] = [i % 40, i / 40].map(|n| (n as f64 + 0.5) / 10.0 - 2.0);

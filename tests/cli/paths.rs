@@ -2,6 +2,10 @@
 
 use crate::person::Folder;
 use std::fs;
+#[cfg(unix)]
+use std::io::{BufRead, BufReader};
+#[cfg(unix)]
+use std::process::{Command, Stdio};
 
 const SMALL: &str = "--size 24x20 --spp 2 --force";
 
@@ -103,6 +107,8 @@ fn what_paths_do_not_go_with_is_refused_by_name() {
         ("--noise 0", "--noise"),
         ("--seconds=-1", "--seconds"),
         ("--exposure 99", "-64 to 64"),
+        ("--noise 0.1 --device reference", "--device reference"),
+        ("--seconds 9 --device reference", "--device reference"),
     ] {
         let ran = folder.run(&format!(
             "render phantom:sphere,n=8 --technique pathtrace {words} -o q.png --size 20x20"
@@ -171,6 +177,14 @@ fn tone_is_for_screens_alone() {
     let read = |name| fs::read(folder.path(name)).expect("a file");
     assert!(read("a.npy") == read("b.npy"));
     assert!(read("a.png") != read("b.png"));
+    let words = "render phantom:head,n=24 --size 24x20 --force";
+    let ran = folder.run(&format!("{words} -o b.npy --tone neutral"));
+    ran.assert_done();
+    assert!(ran.err.contains("holds light as it is"), "{}", ran.err);
+    let ran = folder.run(&format!(
+        "{words} -o b.png --tone neutral --color-space display"
+    ));
+    ran.assert_refused(2, &["--color-space display"]);
     folder
         .run("animate phantom:head,n=24 --size 24x20 --turntable 1 -o b.apng --tone neutral --exposure 1")
         .assert_done();
@@ -267,4 +281,40 @@ fn what_is_no_sky_is_refused_by_name() {
     ran.assert_refused(2, &["--environment"]);
     let ran = folder.run("render phantom:head,n=8 --size 8x8 -o a.png --background environment");
     ran.assert_refused(2, &["--background environment"]);
+}
+
+/// Once: the picture of what has been traced is written. Of the CPU reference there is none.
+#[cfg(unix)]
+#[test]
+fn an_interrupt_writes_the_picture_of_the_paths_that_there_are() {
+    let folder = Folder::new();
+    for (device, is_written) in [("", true), ("--device reference", false)] {
+        let words = format!(
+            "render phantom:head,n=24 --technique pathtrace --spp 1000000 --size 24x20 --progress json -o a.png --force {device}"
+        );
+        let mut child = folder
+            .command(&words)
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the program runs");
+        let mut stderr = BufReader::new(child.stderr.take().expect("a pipe")).lines();
+        let is_drawing = |line: &String| match is_written {
+            true => line.contains("\"part\""),
+            false => line.contains("\"stage\":\"draw\""),
+        };
+        let begun = stderr.by_ref().map_while(Result::ok).find(is_drawing);
+        assert!(begun.is_some(), "{words}: nothing is drawn");
+        let kill = Command::new("kill")
+            .args(["-INT", &child.id().to_string()])
+            .status();
+        assert!(kill.expect("kill runs").success());
+        let said: Vec<String> = stderr.map_while(Result::ok).collect();
+        let status = child.wait().expect("an end");
+        assert_eq!(status.code(), Some(130), "{said:?}");
+        let found = fs::read(folder.path("a.png"));
+        assert_eq!(found.is_ok(), is_written, "{said:?}");
+        let says_paths = said.iter().any(|line| line.contains("paths a pixel"));
+        assert_eq!(says_paths, is_written, "{said:?}");
+        let _ = fs::remove_file(folder.path("a.png"));
+    }
 }

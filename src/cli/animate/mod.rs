@@ -469,7 +469,8 @@ impl Animate {
     fn background(&self, plan: &Plan, scene: &SceneFlags, progress: &Progress) -> Vec<[f64; 4]> {
         let mut layers: Vec<_> = scene.picture.background().into_iter().collect();
         if !keeps_transparency(&plan.target) {
-            if layers.first().is_none_or(|color| color[3] < 1.0) {
+            let is_open = layers.first().is_none_or(|color| color[3] < 1.0);
+            if is_open && !scene.picture.shows_sky() {
                 progress.note("this kind of film has no transparency: black lies behind");
             }
             layers.push([0.0, 0.0, 0.0, 1.0]);

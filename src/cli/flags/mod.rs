@@ -80,6 +80,8 @@ use super::Error;
 use super::flow::{BarbFlags, FlowFlags, FlowStyleFlags};
 use super::ground::GroundFlags;
 use super::map::MapFlags;
+use crate::cli::renderer::REFERENCE;
+use crate::picture::{ColorSpace, Tone};
 use crate::technique::Settings;
 use clap::Args;
 use serde::{Deserialize, Serialize};
@@ -209,6 +211,19 @@ impl SceneFlags {
             return Err(Error::usage(
                 "--background environment is for --technique pathtrace",
                 "--background COLOR lies behind pictures of all techniques",
+            ));
+        }
+        if self.picture.tone() != Tone::default() && settings.color_space == ColorSpace::Display {
+            return Err(Error::usage(
+                "--tone and --exposure are of linear light, and --color-space display has none",
+                "leave out --color-space",
+            ));
+        }
+        let ends = self.path.noise.is_some() || self.path.seconds.is_some();
+        if ends && self.device.iter().any(|device| device == REFERENCE) {
+            return Err(Error::usage(
+                "--noise and --seconds end pictures of devices, and --device reference traces all paths of --spp",
+                "--spp N says how many",
             ));
         }
         let settings = Settings {

@@ -19,7 +19,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// Paths of one pass where no driver counts the turns of loops.
-const AT_ONCE: u32 = 16;
+const AT_ONCE: u32 = 8;
 
 /// How often is looked at the noise: at so many paths, and at each doubling.
 const FIRST_LOOK: u32 = 16;
@@ -92,7 +92,7 @@ impl<'v> Renderer<'v> {
             let block = &Scene { settings, ..*scene };
             let (found, gpu_ms) = self.colors(block, InPixel::CENTER)?;
             clock.add(gpu_ms);
-            sums.add(&found, samples);
+            sums.add(&found, samples, all.denoise);
             let is_time = |seconds| begun.elapsed() >= Duration::from_secs_f64(seconds);
             let asked = self.path_ends.asked.as_ref();
             if all.seconds.is_some_and(is_time)
@@ -117,17 +117,18 @@ impl<'v> Renderer<'v> {
         };
         Ok(match all.denoise && sums.blocks > 1 {
             true => {
-                let [first, second] = [0, 1].map(|half| sums.mean_of_half(half));
+                let [first, second] = [0, 1].map(|half| sums.mean_of(half));
                 denoised([&first, &second], scene.extent_pixels[0] as usize)
             }
-            false => sums.mean(),
+            false => sums.mean_of(0),
         })
     }
 }
 
-/// What blocks have brought. Even and odd ones are kept apart: two pictures of different paths.
+/// What blocks have brought.
 #[derive(Debug, Default)]
 struct Sums {
+    /// Of even and of odd blocks, two pictures of different paths; or all in the first.
     halves: [Vec<[f64; 4]>; 2],
     paths_of_halves: [u32; 2],
     paths: u32,
@@ -137,11 +138,12 @@ struct Sums {
 }
 
 impl Sums {
-    fn add(&mut self, found: &[[f32; 4]], paths: u32) {
-        let half = (self.blocks % 2) as usize;
-        for half in &mut self.halves {
-            half.resize(found.len(), [0.0; 4]);
-        }
+    fn add(&mut self, found: &[[f32; 4]], paths: u32, keeps_halves: bool) {
+        let half = match keeps_halves {
+            true => (self.blocks % 2) as usize,
+            false => 0,
+        };
+        self.halves[half].resize(found.len(), [0.0; 4]);
         self.luminance.resize(found.len(), [0.0; 2]);
         for (sum, found) in self.halves[half].iter_mut().zip(found) {
             *sum = std::array::from_fn(|c| sum[c] + f64::from(paths) * f64::from(found[c]));
@@ -155,16 +157,7 @@ impl Sums {
         self.blocks += 1;
     }
 
-    fn mean(&self) -> Vec<[f32; 4]> {
-        let count = f64::from(self.paths);
-        let [a, b] = &self.halves;
-        let mean = |(a, b): (&[f64; 4], &[f64; 4])| {
-            std::array::from_fn(|c| ((a[c] + b[c]) / count) as f32)
-        };
-        a.iter().zip(b).map(mean).collect()
-    }
-
-    fn mean_of_half(&self, half: usize) -> Vec<[f32; 4]> {
+    fn mean_of(&self, half: usize) -> Vec<[f32; 4]> {
         let count = f64::from(self.paths_of_halves[half]);
         let mean = |sum: &[f64; 4]| sum.map(|s| (s / count) as f32);
         self.halves[half].iter().map(mean).collect()
@@ -208,13 +201,13 @@ mod tests {
                 [if (x >> 16) & 1 == 0 { 1.0 } else { 3.0 }; 4]
             };
             let found: Vec<_> = (0..4096).map(pixel).collect();
-            sums.add(&found, 4);
+            sums.add(&found, 4, true);
         }
         let noise = sums.noise().expect("64 blocks tell");
         assert!((noise - 1.0 / 16.0).abs() < 2e-3, "{noise}");
         assert_eq!(sums.paths, 256);
-        let halves = [0, 1].map(|half| sums.mean_of_half(half)[0][0]);
-        let mean = sums.mean()[0][0];
-        assert!((0.5 * (halves[0] + halves[1]) - mean).abs() < 1e-6);
+        assert_eq!(sums.paths_of_halves, [128; 2]);
+        let halves = [0, 1].map(|half| sums.mean_of(half));
+        assert!(halves[0] != halves[1]);
     }
 }

@@ -114,9 +114,9 @@ impl By {
     fn add_filtered(&self, of: &[[f32; 4]], first: usize, band: &mut [[f32; 4]]) {
         let width = self.width;
         let rows = band.len() / width;
-        let own = |i: usize| {
-            self.variance
-                .row(PAD + first + i / width, PAD + i % width, 1)[0]
+        let variance_of = |i: usize| {
+            let [x, y] = [i % width, first + i / width];
+            self.variance.row(PAD + y, PAD + x, 1)[0]
         };
         let mut sums = vec![[0.0_f32; 4]; band.len()];
         let mut weights = vec![0.0_f32; band.len()];
@@ -156,7 +156,7 @@ impl By {
         }
         for (i, pixel) in band.iter_mut().enumerate() {
             // Without noise there is nothing to take out, and a mean would round.
-            let is_exact = own(i) == [0.0; 4];
+            let is_exact = variance_of(i) == [0.0; 4];
             for c in 0..4 {
                 let filtered = match is_exact {
                     true => of[first * width + i][c],

@@ -36,7 +36,7 @@ use majorants::Majorants;
 /// What paths are. Other techniques do not look at it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PathTracing {
-    /// Paths a pixel; at least 1.
+    /// Paths a pixel, at most; at least 1.
     pub samples: u32,
     /// The number of the first of them: pictures of paths `0..a` and `a..b` add up to that of `0..b`.
     pub first_sample: u32,
@@ -61,7 +61,7 @@ pub struct PathTracing {
     pub sky_picture: Option<SkyPicture>,
     /// By how much the picture is turned about z, degrees, positive from x to y.
     pub sky_turn_degrees: f64,
-    /// Whether the eye sees the sky behind the volume; else it is as transparent there as it is.
+    /// Whether the eye sees the sky behind the volume; else the picture is transparent where there is no matter.
     pub shows_sky: bool,
     /// The picture ends where its noise ([`Traced::noise`](crate::offscreen::Traced)) is no more than this, looked at where the
     /// number of paths has doubled. The CPU reference traces all.

@@ -69,7 +69,7 @@ impl SkyPicture {
     /// # Errors
     /// [`SkyError`].
     pub fn new([width, height]: [u32; 2], pixels: &[[f32; 3]]) -> Result<Self, SkyError> {
-        let is_right = width == 2 * height && (2..=MOST_ROWS).contains(&height);
+        let is_right = (2..=MOST_ROWS).contains(&height) && width == 2 * height;
         if !is_right || pixels.len() != width as usize * height as usize {
             return Err(SkyError::Size(width, height));
         }
@@ -81,7 +81,8 @@ impl SkyPicture {
         }
         let side = height.div_ceil(KEPT_ROWS);
         // What does not fill a last square is left to the one before.
-        let size = [width / side, height / side];
+        let rows = height / side;
+        let size = [2 * rows, rows];
         let averaged = match side {
             1 => pixels.to_vec(),
             _ => averaged(pixels, width, side, size),
@@ -329,6 +330,7 @@ mod tests {
     fn what_is_no_sky_is_refused() {
         let wrong = |size, pixels: &[[f32; 3]]| SkyPicture::new(size, pixels).expect_err("refused");
         assert_eq!(wrong([4, 4], &[[1.0; 3]; 16]), SkyError::Size(4, 4));
+        assert_eq!(wrong([2, u32::MAX], &[]), SkyError::Size(2, u32::MAX));
         assert_eq!(wrong([8, 4], &[[1.0; 3]; 16]), SkyError::Size(8, 4));
         assert_eq!(wrong([4, 2], &[[0.0; 3]; 8]), SkyError::Black);
         let mut pixels = [[1.0; 3]; 8];
@@ -348,7 +350,7 @@ mod tests {
 
     #[test]
     fn large_pictures_are_averaged_and_keep_their_light() {
-        let [width, height] = [4100, 2050];
+        let [width, height] = [4102, 2051];
         let pixel = |i: u32| [(i % width + i / width) as f32; 3];
         let pixels: Vec<_> = (0..width * height).map(pixel).collect();
         let sky = SkyPicture::new([width, height], &pixels).expect("a sky");

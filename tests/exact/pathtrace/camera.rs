@@ -53,8 +53,10 @@ fn a_point_out_of_focus_is_a_circle_as_wide_as_a_thin_lens_says() {
     let wanted = (r * r + own * own / 3.0).sqrt();
     let found = (2.0 * moments[1] / moments[0]).sqrt();
     println!("{found} of {wanted}");
+    // Some 3500 rays meet it, and their squares spread by 1 / sqrt(3) of the mean: four standard errors of its root.
     assert!((found / wanted - 1.0).abs() < 0.02, "{found} {wanted}");
     let [covered, through_pinhole] = [&blurred, &sharp].map(|picture| mean(picture, 3)[0]);
+    // As many of the pinhole's rays do: two standard errors of the ratio.
     assert!(
         (covered / through_pinhole - 1.0).abs() < 0.05,
         "{covered} {through_pinhole}"
