@@ -439,6 +439,38 @@ mod tests {
     }
 
     #[test]
+    fn planes_cut_triangles_and_what_lies_behind_them_is_seen() {
+        let sheet = |height: f64, red: f32| {
+            [[-9.0, -9.0], [9.0, -9.0], [0.0, 30.0]].map(|[x, y]| Corner {
+                place: dvec3(x, y, height),
+                color: [red, 0.0, 0.0],
+            })
+        };
+        let mut geometry = Geometry::default();
+        geometry.triangles.add(&sheet(1.0, 0.75), [[0, 1, 2]]);
+        geometry.triangles.add(&sheet(0.0, 0.25), [[0, 1, 2]]);
+        // What lies to the right, and below y + z = 2.
+        let planes = [
+            (DVec3::X, 0.0),
+            (dvec3(0.0, -1.0, -1.0).normalize(), -(2.0_f64.sqrt())),
+        ];
+        let seen = geometry.seen_cut(&above(), [40, 40], [0.0; 2], &planes);
+        for (i, (pixel, distance)) in seen.pixels.iter().zip(&seen.distances).enumerate() {
+            let [x, y] = [i % 40, i / 40].map(|n| (n as f64 + 0.5) / 10.0 - 2.0);
+            // Rows go down.
+            let wanted = match -y {
+                _ if x < 0.0 => (0.0, f64::INFINITY),
+                y if y < 1.0 => (0.75, 8.0),
+                y if y < 2.0 => (0.25, 9.0),
+                _ => (0.0, f64::INFINITY),
+            };
+            assert_eq!(f64::from(pixel[0]), wanted.0, "pixel {i}");
+            let is_there = *distance == wanted.1 || (distance - wanted.1).abs() < 1e-12;
+            assert!(is_there, "pixel {i}: {distance}");
+        }
+    }
+
+    #[test]
     fn the_nearer_of_a_cone_and_a_triangle_is_seen() {
         let mut geometry = Geometry::default();
         geometry.cones.add_line([Vertex {

@@ -203,3 +203,33 @@ pub fn is_upright(header: &Header) -> bool {
     let m = header.world_from_voxel.matrix3;
     m.x_axis.z == 0.0 && m.y_axis.z == 0.0 && m.z_axis.x == 0.0 && m.z_axis.y == 0.0
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DAffine3;
+
+    #[test]
+    fn numbers_are_bilinear_between_columns_and_the_nearest_where_one_is_missing() {
+        let mut field = Field {
+            grid: Grid {
+                dims: [3, 2, 1],
+                world_from_voxel: DAffine3::IDENTITY,
+            },
+            values: vec![0.0, 1.0, 2.0, 10.0, 11.0, 12.0],
+            colors: None,
+            is_signed: false,
+            caption: String::new(),
+            unit: None,
+        };
+        assert_eq!(field.at([0.5, 0.5]), Some(0.0));
+        assert_eq!(field.at([1.75, 1.0]), Some(1.25 + 5.0));
+        // Held beyond the outermost middles.
+        assert_eq!(field.at([0.0, 2.0]), Some(10.0));
+        field.values[5] = f32::NAN;
+        assert_eq!(field.at([1.75, 0.5]), Some(1.25));
+        assert_eq!(field.at([1.75, 1.2]), Some(11.0));
+        assert_eq!(field.at([2.4, 1.2]), None);
+        assert_eq!(field.range(), [0.0, 11.0]);
+    }
+}

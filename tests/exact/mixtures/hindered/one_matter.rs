@@ -105,6 +105,35 @@ fn a_layer_of_another_volume_takes_as_much_light_as_one_of_the_same() {
     }
 }
 
+/// Labels that are hidden cut out all that lies there: light goes through.
+#[test]
+fn hidden_labels_let_light_through() {
+    let floor = cube(|p| f64::from(is_floor(p)));
+    let layer = cube(|p| f64::from(is_layer(p)));
+    let labels = cube(|_| 1.0);
+    let mut hidden = labels.clone();
+    let voxels =
+        (0..SIDE).flat_map(|z| (0..SIDE).flat_map(move |y| (0..SIDE).map(move |x| [x, y, z])));
+    let is_seen = |index: [u32; 3]| !is_layer(DVec3::from(index.map(f64::from)) + 0.5);
+    hidden.validity = Some(voxels.map(|index| u8::from(is_seen(index))).collect());
+    let opaque = white(&[(-1.0, 0.0), (0.5, 1.0)]);
+    let (of_layer, nothing) = (
+        white(&[(-1.0, 0.0), (0.5, opacity_of(EXTINCTION))]),
+        fog([0.0; 3], 0.0),
+    );
+    let layer = channel(&layer, &of_layer, Role::Numbers);
+    for (labels, through) in [
+        (&labels, (-EXTINCTION * 4.0 * 2.0_f64.sqrt()).exp()),
+        (&hidden, 1.0),
+    ] {
+        let channels = [layer, channel(labels, &nothing, Role::Labels)];
+        let found = seen_from_above(&floor, &opaque, Beside::Channels(&channels), lit);
+        let [shadow, bright] = [12, 22].map(|x| f64::from(floor_at(&found, x)));
+        let off = (shadow / bright - through).abs();
+        assert!(off < 1e-5, "{shadow} of {bright}, wanted {through}");
+    }
+}
+
 /// Occlusion alone, where no gradient counts: pictures are the same all over.
 fn occluded(settings: &mut Settings) {
     settings.shading = None;
