@@ -25,7 +25,7 @@
 SHELL := /bin/bash
 .DEFAULT_GOAL := test
 .PHONY: test test-more fresh lint build drawn-exact drawn-embedded command-line command-line-drawn without-device longer viewer-barriers \
-    second conformance-default conformance-least conformance-swiftshader plain least viewer-lint conformance swiftshader demo pictures sheet first-pictures gallery capi install header api bench gpu-cost driver layers display
+    second conformance-default conformance-least conformance-swiftshader plain least viewer-lint conformance swiftshader swiftshader-unpacked demo pictures sheet first-pictures gallery capi install header api bench gpu-cost driver layers display
 
 CARGO ?= cargo
 ROOT := $(if $(filter 0,$(shell id -u)),,sudo )
@@ -189,10 +189,16 @@ BOTH := $(firstword $(foreach folder,$(ICD_FOLDERS),$(wildcard $(folder)/lvp_icd
 
 ON_SWIFTSHADER := VK_DRIVER_FILES=$(CURDIR)/$(SWIFTSHADER) VK_ICD_FILENAMES=$(CURDIR)/$(SWIFTSHADER)
 
+# Two groups of tests may want it at once, and half a package is none: it is unpacked beside its place.
 swiftshader:
-	@[ -f $(SWIFTSHADER) ] || { mkdir -p target/swiftshader && cd target/swiftshader && rm -f chromium-common_*.deb \
+	@mkdir -p target && exec flock target/swiftshader.lock $(MAKE) --no-print-directory swiftshader-unpacked
+
+swiftshader-unpacked:
+	@[ -f $(SWIFTSHADER) ] || { rm -rf target/swiftshader target/swiftshader.part && mkdir target/swiftshader.part \
+	    && cd target/swiftshader.part \
 	    && { apt-get download -qq chromium-common || { $(APT) update -qq && apt-get download -qq chromium-common; }; } \
-	    && dpkg -x chromium-common_*.deb . && rm -f chromium-common_*.deb && cd $(CURDIR) && [ -f $(SWIFTSHADER) ]; }
+	    && dpkg -x chromium-common_*.deb . && rm -f chromium-common_*.deb && cd $(CURDIR) \
+	    && mv target/swiftshader.part target/swiftshader && [ -f $(SWIFTSHADER) ]; }
 
 # Whether the second driver is there, or a line that says why what is asked of it is skipped.
 with-second = if ! why=$$($(MAKE) --no-print-directory swiftshader 2>&1); then \

@@ -182,8 +182,10 @@ impl Field {
         let [nx, ny, _] = self.grid.dims;
         let ((x0, x1, s), (y0, y1, t)) = (tap(x, nx), tap(y, ny));
         let value = |x: usize, y: usize| f64::from(self.values[y * nx as usize + x]);
-        let mixed = (1.0 - t) * ((1.0 - s) * value(x0, y0) + s * value(x1, y0))
-            + t * ((1.0 - s) * value(x0, y1) + s * value(x1, y1));
+        // A neighbour of no weight need not be there.
+        let mix = |a: f64, b: f64, part: f64| if part == 0.0 { a } else { a + part * (b - a) };
+        let row = |y: usize| mix(value(x0, y), value(x1, y), s);
+        let mixed = mix(row(y0), row(y1), t);
         if mixed.is_finite() {
             return Some(mixed);
         }

@@ -86,7 +86,8 @@ fn a_point_out_of_focus_is_a_circle_as_wide_as_a_thin_lens_says() {
             }),
         ]
         .map(|lens| seen_by(&camera, lens));
-        assert!(through_pinhole.pixels.iter().any(|p| p[3] > 0.9));
+        // The plate is 1.66 pixels wide: it covers .69 of the pixels about a corner, and more of others.
+        assert!(through_pinhole.pixels.iter().any(|p| p[3] > 0.5));
         let off = apart(&through_pinhole, &through_lens);
         assert!(off < 0.25, "{off}");
     }
