@@ -173,12 +173,14 @@ NOT_LEAST := gpu matrix capi examples
 # Images larger than the least device allows; a volume longer than its 256 texels, which is to lie in one texture.
 WITH_MORE := codes:: fetches_are_those_of_the_reference_in_every_technique words_folded_over_many_rows_have_the_values_of_the_reference \
     distance_maps_hold_distances_to_the_nearest_cell_with_matter
+# How good pictures are is no matter of limits.
+MEASURED := quality:: main_axis::seam:: pathtrace::noise::
 UNDER_LEAST := STRATAVOX_LIMITS=least RUST_TEST_THREADS=1 $(TEST)
 
 least: driver layers
 	$(UNDER_LEAST) --no-fail-fast $(addprefix --test ,$(filter-out $(NOT_LEAST),$(WITH_DEVICE))) $(SHOWN) \
-	    $(addprefix --skip ,$(WITH_MORE))
-	$(ON_DEVICE) --no-fail-fast --lib --examples $(addprefix --test ,$(NOT_LEAST)) $(SHOWN) --skip $(BARRIERS)
+	    $(addprefix --skip ,$(WITH_MORE) $(MEASURED))
+	$(ON_DEVICE) --no-fail-fast --test gpu --test capi $(SHOWN)
 	$(ON_DEVICE) --test exact $(SHOWN) codes::
 
 # A second driver, from Debian's chromium: unpacked, and not installed.

@@ -40,10 +40,11 @@ def preset(name, volume):
     return json.loads(run("preset", "show", name, VOLUMES / volume, "--json"))
 
 
-def image(array, spacing):
+def image(array, spacing, origin=(0, 0, 0)):
     made = vtk.vtkImageData()
     made.SetDimensions(*array.shape[::-1])
     made.SetSpacing(*spacing)
+    made.SetOrigin(*origin)
     made.GetPointData().SetScalars(numpy_to_vtk(np.ascontiguousarray(array).reshape(-1), deep=1))
     return made
 
@@ -88,8 +89,7 @@ def by_gradient(function, low, high, spacing, step):
     return made
 
 
-def by_vtk(name, data, view, step, function=None, table=None, mip=False, material=None, lamp=None, ambient_lamp=None,
-           fixed_point=False, shadow=0.0):
+def looks(data, function):
     look, color, opacity = vtk.vtkVolumeProperty(), vtk.vtkColorTransferFunction(), vtk.vtkPiecewiseFunction()
     low, high = data.GetScalarRange()
     function = function or {"color": [[low, 0, 0, 0], [high, 1, 1, 1]], "opacity": [[low, 1], [high, 1]]}
@@ -101,6 +101,12 @@ def by_vtk(name, data, view, step, function=None, table=None, mip=False, materia
     look.SetScalarOpacity(opacity)
     look.SetInterpolationTypeToLinear()
     look.SetScalarOpacityUnitDistance(function.get("reference_length", min(data.GetSpacing())))
+    return look
+
+
+def by_vtk(name, data, view, step, function=None, table=None, mip=False, material=None, lamp=None, ambient_lamp=None,
+           fixed_point=False, shadow=0.0):
+    look = looks(data, function)
     if material:
         look.ShadeOn()
         look.SetAmbient(material[0])
@@ -122,9 +128,29 @@ def by_vtk(name, data, view, step, function=None, table=None, mip=False, materia
         mapper.SetGlobalIlluminationReach(1.0)
     if mip:
         mapper.SetBlendModeToMaximumIntensity()
-    volume, scene, window = vtk.vtkVolume(), vtk.vtkRenderer(), vtk.vtkRenderWindow()
+    volume = vtk.vtkVolume()
     volume.SetMapper(mapper)
     volume.SetProperty(look)
+    shown(name, volume, view, lamp, ambient_lamp)
+
+
+def several_by_vtk(name, pairs, view, step):
+    """Volumes with a function each in one picture: `vtkMultiVolume`, which is how 3D Slicer draws several."""
+    mapper, all_of_them = vtk.vtkOpenGLGPUVolumeRayCastMapper(), vtk.vtkMultiVolume()
+    mapper.SetAutoAdjustSampleDistances(0)
+    mapper.SetSampleDistance(step)
+    mapper.UseJitteringOff()
+    all_of_them.SetMapper(mapper)
+    for port, (data, function) in enumerate(pairs):
+        mapper.SetInputDataObject(port, data)
+        volume = vtk.vtkVolume()
+        volume.SetProperty(looks(data, function))
+        all_of_them.SetVolume(volume, port)
+    shown(name, all_of_them, view)
+
+
+def shown(name, volume, view, lamp=None, ambient_lamp=None):
+    scene, window = vtk.vtkRenderer(), vtk.vtkRenderWindow()
     scene.AddVolume(volume)
     window.SetOffScreenRendering(1)
     window.SetMultiSamples(0)
@@ -284,3 +310,21 @@ by_vtk("pet", data, view, 1.7, function, mip=True)
 by_vtk("pet_smooth", smooth.GetOutput(), view, 1.7, function, mip=True)
 judge("pet")
 judge("pet_smooth")
+
+# A chest by CT with a heart by PET, of two people: the second is moved so that its heart lies in the first's chest, and cut
+# at the ends of the first, beyond which ours draws nothing.
+FILE, spacing = "ct-torso/torso-2x.mha", (1.5625, 1.5625, 2.0)
+whole = numbers(FILE)
+inner_spacing, inner_origin = (3.53782, 3.53782, 3.375), (-35.523, -23.275, 70.216)
+inner = numbers("dicom-pet")[:60, 7:119, 11:122]
+inner_origin = [o + n * s for o, n, s in zip(inner_origin, (11, 7, 0), inner_spacing)]
+words = ["--preset", "ct-bone", "--shading", "none", "--keep-all", "--azimuth", 70, "--elevation", 10, "--zoom", 1.3]
+both = f"{VOLUMES / 'dicom-pet'},preset=pet,shift=10:-344:80"
+by_us("ct_alone", FILE, *words)
+by_us("ct_and_pet", FILE, *words, "--with", both)
+view = around(whole.shape, spacing, 70, 10, 1.3, turned=True)
+ct, pet = (image(whole, spacing), preset("ct-bone", FILE)), (image(inner, inner_spacing, inner_origin), preset("pet", "dicom-pet"))
+by_vtk("ct_alone", ct[0], view, 0.78, ct[1])
+several_by_vtk("ct_and_pet", [ct, pet], view, 0.78)
+judge("ct_alone")
+judge("ct_and_pet")

@@ -21,3 +21,5 @@ draw walnut ct-walnut/walnut.mhd --shading phong --material 0.3,0.6,0.1,10 --lig
 draw nuclei tiff-nuclei/img3d.tif --mode mida --samples-per-voxel 2 --zoom 1.1
 "$program" render "$volumes/met-wrf/wrf_ci.nc" --show both --size 900x600 --force --progress none -o "$here/weather.png"
 draw pet dicom-pet --mode mip --denoise nlm --view anterior --zoom 1.3
+# Two people: the heart of the second is moved into the chest of the first.
+draw ct-pet ct-torso/torso-2x.mha --with "$volumes/dicom-pet,preset=pet,shift=10:-344:80" --view anterior

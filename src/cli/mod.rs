@@ -38,6 +38,7 @@ mod preset;
 mod progress;
 mod readable;
 mod reasons;
+mod registration;
 mod render;
 mod renderer;
 mod resume_check;

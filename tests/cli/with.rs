@@ -73,6 +73,48 @@ fn another_volume_is_seen_inside_the_first_which_is_faint() {
     assert!(said.contains("the rest is not seen"), "{said}");
 }
 
+/// What a registration found, in LPS+, from INPUT to the volume that moves: a translation, and a quarter turn about a point.
+/// A quarter turn leaves the voxels of a ball where they are, so both are moves.
+#[test]
+fn a_registration_moves_a_volume_as_a_shift_does() {
+    let folder = folder();
+    let transform = |name: &str, words: &str| {
+        let text = format!("#Insight Transform File V1.0\n#Transform 0\nTransform: {words}\n");
+        folder.file(name, text.into_bytes());
+    };
+    transform(
+        "move.tfm",
+        "TranslationTransform_double_3_3\nParameters: 1 -2 -1\nFixedParameters:",
+    );
+    // A (x - c) + c is the ball's middle at x = c - A^-1 c = (2, 2, 0).
+    transform(
+        "turn.tfm",
+        "AffineTransform_double_3_3\nParameters: 0 -1 0 1 0 0 0 0 1 0 0 0\nFixedParameters: 2 0 0",
+    );
+    let picture = |words: &str| {
+        let words = format!(
+            "outer.nrrd --with inner.nrrd,color=red,window=0:100,{words} --projection orthographic"
+        );
+        pixels(&folder, &words).0
+    };
+    for (registered, shifted) in [
+        ("transform=move.tfm", "shift=1:-2:1"),
+        ("transform=turn.tfm", "shift=-2:-2:0"),
+        ("shift=1:0:0,transform=turn.tfm", "shift=-1:-2:0"),
+    ] {
+        let [found, wanted] = [registered, shifted].map(picture);
+        let off = found.iter().flatten().zip(wanted.iter().flatten());
+        let off = off.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        // Places in voxels are products of other matrices, in single precision.
+        assert!(off < 1e-4, "{registered}: {off}");
+    }
+    assert!(picture("shift=-2:-2:0") != picture("shift=0:0:0"));
+    let words = "outer.nrrd --with inner.nrrd,color=red,window=0:100,transform=turn.tfm";
+    let (wanted, _) = pixels(&folder, &format!("{words} --save-scene turned.json"));
+    fs::remove_file(folder.path("turn.tfm")).expect("the file");
+    assert!(pixels(&folder, "--scene turned.json").0 == wanted);
+}
+
 #[test]
 fn maxima_of_volumes_are_added_and_none_is_cut() {
     let folder = folder();
@@ -153,6 +195,14 @@ fn what_cannot_be_joined_is_refused_with_a_reason() {
         (
             "outer.nrrd --with inner.nrrd --with inner.nrrd --with inner.nrrd --with inner.nrrd",
             "at most 4",
+        ),
+        (
+            "outer.nrrd --with inner.nrrd,transform=inner.nrrd",
+            "wanted a transform of ITK",
+        ),
+        (
+            "outer.nrrd --with inner.nrrd,transform=none.tfm",
+            "none.tfm",
         ),
         (
             "outer.nrrd --with inner.nrrd,component=1",

@@ -4,7 +4,9 @@ use super::{
     Error, Inlined, InputFlags, color::rgb, component::Component, input::PHANTOM, values::colormap,
     values::preset,
 };
+use crate::cli::registration;
 use clap::Args;
+use glam::{DAffine3, DVec3};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -14,8 +16,9 @@ use std::str::FromStr;
 #[serde(default, deny_unknown_fields)]
 pub struct WithFlags {
     /// Another volume of the same place, on a grid of its own if need be, drawn together with INPUT and by a function of its
-    /// own: preset, tf, colormap, color and window say which, variable and component what is read, shift=X:Y:Z moves it in
-    /// world length; once for each volume
+    /// own: preset, tf, colormap, color and window say which, variable and component what is read, transform=FILE (a linear
+    /// registration of ITK, ANTs or 3D Slicer, with INPUT as the fixed volume) and then shift=X:Y:Z, in world length, move it;
+    /// once for each volume
     #[arg(
         long,
         value_name = "FILE[,preset=NAME][,window=LO:HI]...",
@@ -55,29 +58,47 @@ pub struct WithWord {
     /// From the value that is hardly seen to the one that is seen most.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub window: Option<[f64; 2]>,
-    /// How far it is moved, in world length.
+    /// The file of a registration.
+    #[serde(skip)]
+    pub transform_file: Option<PathBuf>,
+    /// What stood in it: rows of the matrix that puts it into the world of INPUT.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub transform: Option<[[f64; 4]; 3]>,
+    /// How far it is moved after that, in world length.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shift: Option<[f64; 3]>,
 }
 
 /// The keys of a word.
-const KEYS: &str = "preset, tf, colormap, color, window, variable, component or shift";
+const KEYS: &str = "preset, tf, colormap, color, window, variable, component, transform or shift";
 
 impl WithFlags {
-    /// Reads the files of functions; what a scene says in their place is gone.
+    /// Reads the files of functions and registrations; what a scene says in their place is gone.
     pub fn inline_files(&mut self) -> Result<(), Error> {
         for word in &mut self.with {
             if let Some(path) = &word.tf {
                 word.function = Some(Inlined::read(path)?);
             }
+            if let Some(path) = &word.transform_file {
+                let affine = registration::read(path)?;
+                let rows = affine.matrix3.transpose().to_cols_array_2d();
+                let offset = affine.translation.to_array();
+                word.transform = Some([0, 1, 2].map(|i| {
+                    let [x, y, z] = rows[i];
+                    [x, y, z, offset[i]]
+                }));
+            }
         }
         Ok(())
     }
 
-    /// The files, those of functions too.
+    /// The files, those of functions and registrations too.
     pub fn files(&self) -> impl Iterator<Item = &Path> {
         let words = self.with.iter();
-        words.flat_map(|word| word.file().into_iter().chain(word.tf.as_deref()))
+        words.flat_map(|word| {
+            let beside = [word.tf.as_deref(), word.transform_file.as_deref()];
+            word.file().into_iter().chain(beside.into_iter().flatten())
+        })
     }
 
     /// The same words with other paths.
@@ -111,6 +132,19 @@ impl WithWord {
         }
     }
 
+    /// Moves it as the words say.
+    pub fn moved(&self, world_from_voxel: DAffine3) -> DAffine3 {
+        let rows = self.transform.unwrap_or([
+            [1.0, 0.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0, 0.0],
+            [0.0, 0.0, 1.0, 0.0],
+        ]);
+        let columns = [0, 1, 2, 3].map(|k| DVec3::from_array(rows.map(|row| row[k])));
+        let registered = DAffine3::from_cols(columns[0], columns[1], columns[2], columns[3]);
+        let shift = DVec3::from_array(self.shift.unwrap_or_default());
+        DAffine3::from_translation(shift) * registered * world_from_voxel
+    }
+
     /// The words that name it, as those of INPUT say how to read.
     pub fn input(&self, of_input: &InputFlags) -> InputFlags {
         InputFlags {
@@ -134,6 +168,7 @@ impl WithWord {
                 .window
                 .replace(super::channels::window_of(value)?)
                 .is_none(),
+            "transform" => self.transform_file.replace(value.into()).is_none(),
             "shift" => self.shift.replace(shift_of(value)?).is_none(),
             "variable" => self.variable.replace(value.to_owned()).is_none(),
             "component" => {

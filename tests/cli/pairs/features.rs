@@ -9,7 +9,7 @@ pub struct Feature {
     pub choice: &'static str,
     /// What it is.
     pub name: &'static str,
-    /// The words; `{place}`, `{clip}`, `{thick}` and `{window}` are those of the input ([`Input::fill`]).
+    /// The words; `{place}`, `{clip}`, `{thick}`, `{window}` and `{ground}` are those of the input ([`Input::fill`]).
     pub words: &'static str,
     /// The inputs that have it, the best first.
     pub inputs: &'static [Input],
@@ -155,6 +155,14 @@ pub const FEATURES: &[Feature] = &[
         &[Input::Earth],
         feature("map", "lines of the map", "--map graticule=1"),
     ),
+    of(
+        &[Input::Storm, Input::Earth],
+        feature("barbs", "wind barbs", "--barbs"),
+    ),
+    of(
+        &[Input::Storm, Input::Earth],
+        feature("ground", "a field on the ground", "--ground {ground}"),
+    ),
     unseen(feature("film", "turntable", "--turntable 2")),
     of(
         &[Input::Storm],
@@ -171,6 +179,8 @@ pub const FEATURES: &[Feature] = &[
 pub const GIVEN: &[[&str; 2]] = &[
     ["pre-integrated classification", "lines of the wind"],
     ["pre-integrated classification", "lines of the map"],
+    ["pre-integrated classification", "wind barbs"],
+    ["pre-integrated classification", "a field on the ground"],
     ["pre-integrated classification", "film of all times"],
     [
         "pre-integrated classification",

@@ -64,6 +64,14 @@ impl Input {
             ("{clip}", clip),
             ("{thick}", thick),
             ("{window}", window),
+            (
+                "{ground}",
+                if self == Self::Earth {
+                    "pot"
+                } else {
+                    "temperature"
+                },
+            ),
         ]
         .iter()
         .fold(words.to_owned(), |words, (name, value)| {

@@ -49,6 +49,10 @@ pub const RULES: &[Rule] = &[
             "a section is of a volume, and spheres are none",
         ),
     ),
+    no_meaning(
+        "it stands at a height of its own, and not in the plane",
+        "barbs and the ground stand at a height, and a section is a plane",
+    ),
     of(
         &["turntable"],
         no_meaning(
