@@ -171,6 +171,15 @@ pub const FEATURES: &[Feature] = &[
         s.shading = Some(lights());
     }),
     feature(
+        "light, pre-integration",
+        "`--preintegrated --shading phong`",
+        Seen::Alone,
+        |s| {
+            s.preintegrated = true;
+            s.shading = Some(lights());
+        },
+    ),
+    feature(
         "ambient occlusion",
         "`--ambient-occlusion`",
         Seen::Alone,

@@ -37,6 +37,7 @@ log2 is off by (2.4 x 2^-21 ln 2) of it: c is 0.14 or more, which makes 24 x 2^-
 enum Look {
     Plain,
     Lit,
+    LitSlabs,
     Holes,
 }
 
@@ -56,6 +57,7 @@ pub fn cases() -> Vec<Case> {
                 let of_look = match look {
                     Look::Plain => "plain",
                     Look::Lit => "lit",
+                    Look::LitSlabs => "lit_slabs",
                     Look::Holes => "holes",
                 };
                 let name = format!("reference.{of}.{word}.{of_look}.{}.{projection}", filter.0);
@@ -103,6 +105,13 @@ pub fn cases() -> Vec<Case> {
             placement,
             "composite",
             Mode::Composite,
+            ("linear_fetch", Filter::Linear),
+            Look::LitSlabs,
+        );
+        add(
+            placement,
+            "composite",
+            Mode::Composite,
             ("cubic", Filter::Cubic),
             Look::Lit,
         );
@@ -128,7 +137,8 @@ fn measure(
     let shot = shot.with(|settings| {
         settings.crop = None;
         settings.color_space = ColorSpace::Linear;
-        settings.shading = (look == Look::Lit).then(Shading::default);
+        settings.preintegrated = look == Look::LitSlabs;
+        settings.shading = matches!(look, Look::Lit | Look::LitSlabs).then(Shading::default);
         settings.per_mode.lmip_threshold = 0.6;
         settings.per_mode.levels = vec![Level {
             value: 0.55,
