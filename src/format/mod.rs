@@ -39,6 +39,8 @@ pub(crate) mod earth;
 mod fence;
 mod file_source;
 mod find;
+#[cfg(feature = "json")]
+pub mod geographic;
 pub(crate) mod geometry;
 mod grib;
 #[cfg(feature = "netcdf")]

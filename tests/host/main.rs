@@ -24,6 +24,9 @@ mod nifti;
 #[cfg(all(feature = "png", feature = "exr"))]
 #[path = "../picture_shared/mod.rs"]
 mod picture_shared;
+#[cfg(all(feature = "files", feature = "json"))]
+#[path = "../shared/shapefile.rs"]
+mod shapefile;
 #[cfg(feature = "files")]
 #[path = "../shared/survive.rs"]
 mod survive;
@@ -69,6 +72,8 @@ mod format_escapes;
     feature = "grib"
 ))]
 mod format_fields;
+#[cfg(all(feature = "files", feature = "json"))]
+mod format_geographic;
 #[cfg(feature = "files")]
 mod format_grib;
 mod format_hdf5;

@@ -137,9 +137,8 @@ impl DrawnLines {
         let mut drawn = Self::default();
         let at = of_film.map(|film| film.time);
         drawn.ground = Ground::read(scene, header, stretch, at, progress)?;
-        if let Some(map) = &scene.map.map {
-            drawn.add_map(map.lines(header)?, stretch, scene.section.half_thickness());
-        }
+        let of_map = scene.map.lines(header, &scene.input.limits())?;
+        drawn.add_map(of_map, stretch, scene.section.half_thickness());
         if let Some(word) = scene.flow.flow {
             let of_seeds = of_film.filter(|film| !film.seeds.is_empty());
             drawn.add_wind(word, scene, stretch, of_seeds, progress)?;

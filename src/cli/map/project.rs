@@ -18,6 +18,9 @@ const MOST_OFF: f64 = 0.05;
 /// Kilometres.
 const RADIUS: f64 = 6370.0;
 
+/// Degrees between places of a line that is bent on the map.
+pub(super) const FINE: f64 = 0.25;
+
 /// Takes places of the Earth to the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Projection {
@@ -83,6 +86,17 @@ impl Projection {
         (off > MOST_OFF * corner.step).then_some(off)
     }
 
+    /// True where the line between two longitudes goes over the edge of the map: on it, it would go around the Earth.
+    fn is_over_edge(&self, a: f64, b: f64) -> bool {
+        match *self {
+            Self::Degrees(_) => (b - a).abs() > 180.0,
+            Self::Map { kind, .. } if kind == MapKind::PolarStereographic => false,
+            Self::Map { longitude, .. } => {
+                (wrapped(longitude, b) - wrapped(longitude, a)).abs() > 180.0
+            }
+        }
+    }
+
     /// The latitude in degrees of x and y of the world.
     pub fn latitude(&self, [x, y]: [f64; 2]) -> f64 {
         let Self::Map {
@@ -133,7 +147,7 @@ impl Projection {
             };
             return Some([longitude * x, latitude * y]);
         };
-        let l = ((longitude - middle + 180.0).rem_euclid(360.0) - 180.0).to_radians();
+        let l = wrapped(middle, longitude).to_radians();
         let p = latitude.to_radians();
         let [p1, p2] = true_latitudes.map(f64::to_radians);
         let [x, y] = match kind {
@@ -160,6 +174,55 @@ impl Projection {
             .all(|n| n.is_finite() && n.abs() < 1e6)
             .then_some(place)
     }
+}
+
+/// Degrees from the middle of a map to a longitude, -180 to 180.
+fn wrapped(middle: f64, longitude: f64) -> f64 {
+    (longitude - middle + 180.0).rem_euclid(360.0) - 180.0
+}
+
+/// How many straight pieces of a map stand for a line that is straight in longitude and latitude.
+pub(super) fn pieces(a: [f64; 2], b: [f64; 2]) -> u32 {
+    let degrees = (b[0] - a[0]).abs().max((b[1] - a[1]).abs());
+    (degrees / FINE).ceil().max(1.0) as u32
+}
+
+/// Takes a line to the map, so many degrees to the east; gives its parts between edges of the map.
+pub(super) fn projected_line(
+    projection: &Projection,
+    line: &[[f64; 2]],
+    turn: f64,
+    mut give: impl FnMut(Vec<[f64; 2]>),
+) {
+    let is_bent = matches!(projection, Projection::Map { .. });
+    let mut part = Vec::new();
+    let mut before: Option<[f64; 2]> = None;
+    for &[longitude, latitude] in line {
+        let mut place = [longitude + turn, latitude];
+        let from = before.unwrap_or(place);
+        if is_bent {
+            place[0] += 360.0 * ((from[0] - place[0]) / 360.0).round();
+        }
+        let count = if is_bent { pieces(from, place) } else { 1 };
+        let mut last = from[0];
+        for i in 1..=count {
+            let part_of_way = f64::from(i) / f64::from(count);
+            let at = match i == count {
+                true => place,
+                false => [0, 1].map(|k| from[k] + part_of_way * (place[k] - from[k])),
+            };
+            if projection.is_over_edge(last, at[0]) {
+                give(std::mem::take(&mut part));
+            }
+            match projection.place(at) {
+                Some(place) => part.push(place),
+                None => give(std::mem::take(&mut part)),
+            }
+            last = at[0];
+        }
+        before = Some(place);
+    }
+    give(part);
 }
 
 /// tan(45 + p / 2).
