@@ -5,6 +5,8 @@
 mod dicom;
 #[path = "../shared/files.rs"]
 mod files;
+#[path = "../shared/shapefile.rs"]
+mod shapefile;
 
 mod animate;
 #[cfg(target_os = "linux")]
@@ -19,6 +21,8 @@ mod annotate_private;
 mod barbs;
 mod bench;
 mod classified;
+mod coast;
+mod comets;
 mod conformance;
 mod conformance_clamped;
 mod conformance_runs;

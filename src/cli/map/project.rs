@@ -270,6 +270,48 @@ mod tests {
         assert_eq!(degrees.latitude([7.0, -222.0]), -2.0);
     }
 
+    #[test]
+    fn lines_are_straight_in_degrees_and_end_at_the_edge_of_the_map() {
+        let projection = |kind, true_latitudes: [f64; 2]| {
+            let map = MapProjection {
+                kind,
+                true_latitudes: true_latitudes.map(Some),
+                standard_longitude: Some(-90.0),
+                center: Some([40.0, -90.0]),
+                corner: None,
+            };
+            Projection::of_map(&map).expect("a map")
+        };
+        let parts_of = |projection: &Projection, line: &[[f64; 2]], turn: f64| {
+            let mut parts = Vec::new();
+            projected_line(projection, line, turn, |part| parts.push(part));
+            parts
+        };
+        let lambert = projection(MapKind::Lambert, [30.0, 60.0]);
+        // A border on a parallel, 60 degrees long.
+        let line = [[-120.0, 49.0], [-60.0, 49.0]];
+        let parts = parts_of(&lambert, &line, 0.0);
+        assert_eq!(parts.iter().map(Vec::len).collect::<Vec<_>>(), [241]);
+        for (i, place) in parts[0].iter().enumerate() {
+            let wanted = lambert.place([-120.0 + 0.25 * i as f64, 49.0]);
+            assert_eq!(Some(*place), wanted);
+        }
+        // The edge of the maps is at 90 east, and lines go the shorter way over the 180th meridian.
+        let line = [[89.5, 10.0], [90.5, 12.0], [179.5, 12.0], [-179.5, 12.0]];
+        for projection in [lambert, projection(MapKind::Mercator, [20.0, 20.0])] {
+            let parts = parts_of(&projection, &line, 0.0);
+            let counts: Vec<usize> = parts.iter().map(Vec::len).collect();
+            // 8 pieces of two degrees up, half of them before the edge; 356 of 89 degrees, 4 over the meridian.
+            assert_eq!(counts, [4, 5 + 356 + 4], "{projection:?}");
+        }
+        let polar = projection(MapKind::PolarStereographic, [60.0, 60.0]);
+        assert_eq!(parts_of(&polar, &line, 0.0).len(), 1);
+        let degrees = Projection::Degrees([2.0, 3.0]);
+        let parts = parts_of(&degrees, &line, 360.0);
+        assert_eq!(parts[0], [[899.0, 30.0], [901.0, 36.0], [1079.0, 36.0]]);
+        assert_eq!(parts[1], [[361.0, 36.0]]);
+    }
+
     /// By PROJ 9 (pyproj), +R=6370000: 5 degrees to the north and 7 to the east of a place, from it, in kilometres.
     #[test]
     fn maps_are_those_of_proj() {
