@@ -82,7 +82,9 @@ use absent::{hdf5, netcdf};
 pub(crate) use sequence::expand as numbered_name;
 
 pub use find::{Found, Search, find, stem};
-pub use points::{NoColumns, PointColumns, PointFile, holds_points, open_npy, open_points};
+pub use points::{
+    NoColumns, PointColumns, PointFile, holds_points, holds_samples, open_npy, open_points,
+};
 
 use crate::volume::{Limits, Problem, ReadError, Source, VolumeSelection};
 use problem::at;

@@ -5,6 +5,8 @@
 mod dicom;
 #[path = "../shared/files.rs"]
 mod files;
+#[path = "../shared/netcdf.rs"]
+mod netcdf;
 #[path = "../shared/shapefile.rs"]
 mod shapefile;
 
@@ -60,6 +62,7 @@ mod point_grid;
 mod points;
 mod presets;
 mod real;
+mod sampled;
 mod section;
 mod section_at;
 mod sheet;

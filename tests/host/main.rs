@@ -18,6 +18,9 @@ mod memory;
 #[cfg(feature = "files")]
 #[path = "../shared/mutate.rs"]
 mod mutate;
+#[cfg(all(feature = "files", feature = "netcdf"))]
+#[path = "../shared/netcdf.rs"]
+mod netcdf;
 #[cfg(feature = "files")]
 #[path = "../shared/nifti.rs"]
 mod nifti;
@@ -91,6 +94,7 @@ mod format_nrrd_meaning;
 mod format_nrrd_refused;
 mod format_points;
 mod format_raw;
+mod format_sampled;
 mod format_tiff;
 #[cfg(feature = "tiff")]
 mod format_tiff_refused;
