@@ -8,7 +8,7 @@
 
 use super::Error;
 use super::earth::Lines;
-use super::project::pieces;
+use super::project::{pieces, turns};
 use crate::format::geographic::read_lines;
 use crate::volume::Limits;
 use serde::{Deserialize, Serialize};
@@ -95,8 +95,7 @@ fn without_edges(line: Vec<[f64; 2]>) -> Lines {
                 parts.push(std::mem::replace(&mut part, vec![place]));
             }
             (Some(_), Some(&[last, _])) => {
-                let turns = ((last - place[0]) / 360.0).round();
-                part.push([place[0] + 360.0 * turns, place[1]]);
+                part.push([place[0] + 360.0 * turns(last, place[0]), place[1]]);
             }
             _ => part.push(place),
         }

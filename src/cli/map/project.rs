@@ -90,7 +90,10 @@ impl Projection {
     fn is_over_edge(&self, a: f64, b: f64) -> bool {
         match *self {
             Self::Degrees(_) => (b - a).abs() > 180.0,
-            Self::Map { kind, .. } if kind == MapKind::PolarStereographic => false,
+            Self::Map {
+                kind: MapKind::PolarStereographic,
+                ..
+            } => false,
             Self::Map { longitude, .. } => {
                 (wrapped(longitude, b) - wrapped(longitude, a)).abs() > 180.0
             }
@@ -181,6 +184,17 @@ fn wrapped(middle: f64, longitude: f64) -> f64 {
     (longitude - middle + 180.0).rem_euclid(360.0) - 180.0
 }
 
+/// How often a longitude is to be turned around the Earth, so that from another one it lies the shorter way; none where both
+/// are as long.
+pub(super) fn turns(from: f64, to: f64) -> f64 {
+    let turns = (from - to) / 360.0;
+    if turns.abs() > 0.5 {
+        turns.round()
+    } else {
+        0.0
+    }
+}
+
 /// How many straight pieces of a map stand for a line that is straight in longitude and latitude.
 pub(super) fn pieces(a: [f64; 2], b: [f64; 2]) -> u32 {
     let degrees = (b[0] - a[0]).abs().max((b[1] - a[1]).abs());
@@ -201,7 +215,7 @@ pub(super) fn projected_line(
         let mut place = [longitude + turn, latitude];
         let from = before.unwrap_or(place);
         if is_bent {
-            place[0] += 360.0 * ((from[0] - place[0]) / 360.0).round();
+            place[0] += 360.0 * turns(from[0], place[0]);
         }
         let count = if is_bent { pieces(from, place) } else { 1 };
         let mut last = from[0];
