@@ -39,6 +39,8 @@ pub(crate) mod earth;
 mod fence;
 mod file_source;
 mod find;
+#[cfg(feature = "json")]
+pub mod geographic;
 pub(crate) mod geometry;
 mod grib;
 #[cfg(feature = "netcdf")]
@@ -80,7 +82,9 @@ use absent::{hdf5, netcdf};
 pub(crate) use sequence::expand as numbered_name;
 
 pub use find::{Found, Search, find, stem};
-pub use points::{NoColumns, PointColumns, PointFile, holds_points, open_npy, open_points};
+pub use points::{
+    NoColumns, PointColumns, PointFile, holds_points, holds_samples, open_npy, open_points,
+};
 
 use crate::volume::{Limits, Problem, ReadError, Source, VolumeSelection};
 use problem::at;

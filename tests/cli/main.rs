@@ -5,6 +5,10 @@
 mod dicom;
 #[path = "../shared/files.rs"]
 mod files;
+#[path = "../shared/netcdf.rs"]
+mod netcdf;
+#[path = "../shared/shapefile.rs"]
+mod shapefile;
 
 mod animate;
 #[cfg(target_os = "linux")]
@@ -19,6 +23,8 @@ mod annotate_private;
 mod barbs;
 mod bench;
 mod classified;
+mod coast;
+mod comets;
 mod conformance;
 mod conformance_clamped;
 mod conformance_runs;
@@ -56,6 +62,7 @@ mod point_grid;
 mod points;
 mod presets;
 mod real;
+mod sampled;
 mod section;
 mod section_at;
 mod sheet;

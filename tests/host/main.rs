@@ -18,12 +18,18 @@ mod memory;
 #[cfg(feature = "files")]
 #[path = "../shared/mutate.rs"]
 mod mutate;
+#[cfg(all(feature = "files", feature = "netcdf"))]
+#[path = "../shared/netcdf.rs"]
+mod netcdf;
 #[cfg(feature = "files")]
 #[path = "../shared/nifti.rs"]
 mod nifti;
 #[cfg(all(feature = "png", feature = "exr"))]
 #[path = "../picture_shared/mod.rs"]
 mod picture_shared;
+#[cfg(all(feature = "files", feature = "json"))]
+#[path = "../shared/shapefile.rs"]
+mod shapefile;
 #[cfg(feature = "files")]
 #[path = "../shared/survive.rs"]
 mod survive;
@@ -69,6 +75,8 @@ mod format_escapes;
     feature = "grib"
 ))]
 mod format_fields;
+#[cfg(all(feature = "files", feature = "json"))]
+mod format_geographic;
 #[cfg(feature = "files")]
 mod format_grib;
 mod format_hdf5;
@@ -86,6 +94,7 @@ mod format_nrrd_meaning;
 mod format_nrrd_refused;
 mod format_points;
 mod format_raw;
+mod format_sampled;
 mod format_tiff;
 #[cfg(feature = "tiff")]
 mod format_tiff_refused;

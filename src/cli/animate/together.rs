@@ -5,7 +5,7 @@ use super::volumes::blend;
 use crate::cli::{
     Error,
     flags::{Numbers, SceneFlags},
-    flow::{FilmSeed, FilmTime},
+    flow::{DrawnLines, FilmSeed, FilmTime, Ways},
     load::open_first,
     memory::{DeviceMemory, DeviceRoom},
     progress::Progress,
@@ -13,6 +13,7 @@ use crate::cli::{
 };
 use crate::technique::Settings;
 use std::path::Path;
+use std::sync::Arc;
 
 /// What reading each time takes.
 #[derive(Debug)]
@@ -22,6 +23,7 @@ pub struct Together {
     memory: Option<DeviceMemory>,
     /// Of the lines of the first time.
     seeds: Vec<FilmSeed>,
+    ways: Option<Arc<Ways>>,
 }
 
 impl Together {
@@ -45,6 +47,7 @@ impl Together {
                 .get_or_insert(Numbers(lines.range()));
         }
         Self {
+            ways: first.lines().and_then(DrawnLines::ways).cloned(),
             seeds: first
                 .lines()
                 .map_or(Vec::new(), |lines| lines.seeds().to_vec()),
@@ -73,7 +76,8 @@ impl Together {
             })?;
         }
         let seeds = &self.seeds;
-        let of_film = Some(FilmTime { time, seeds });
+        let ways = self.ways.as_deref();
+        let of_film = Some(FilmTime { time, seeds, ways });
         let mut scene = self.scene.clone();
         scene.input.time = Some(before.to_string());
         shown.with_lines(&scene, of_film, &quiet)

@@ -173,6 +173,7 @@ impl SceneFlags {
         let words = [
             ("--flow", self.flow.flow.is_some()),
             ("--map", self.map.map.is_some()),
+            ("--coast", self.map.coast.is_some()),
             ("--barbs", self.barbs.barbs.is_some()),
             ("--ground", self.ground.ground.is_some()),
         ];

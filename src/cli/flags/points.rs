@@ -45,7 +45,10 @@ pub struct PointLookFlags {
 impl InputFlags {
     /// True where the input is scattered points.
     pub fn holds_points(&self) -> bool {
-        self.points_are_named() || self.file().is_some_and(points::holds_points)
+        // A stranger's file is opened by a reader of its own.
+        let samples = |file: &Path| !self.untrusted && points::holds_samples(file, &self.limits());
+        let of_file = |file: &Path| points::holds_points(file) || samples(file);
+        self.points_are_named() || self.file().is_some_and(of_file)
     }
 
     /// True where a flag is for points alone.

@@ -3,7 +3,7 @@
 //! ```text
 //! radius = width / 2 pixels where the camera is turned to
 //! map    at sea level; on a level section of the Earth at the face of the slab that is seen
-//! head   a round cone from 2.8 radii to none, 10 radii long, every 60 pixels
+//! head   a round cone from 2.8 radii to none, 10 radii long, every 60 pixels; of a comet its end (`moving`)
 //! ```
 
 use super::super::{
@@ -17,6 +17,7 @@ use super::barbs::{self, Barbs};
 use super::colors::LineColors;
 use super::film::{FilmSeed, FilmTime, seeds_of};
 use super::flags::{FlowColor, FlowWord};
+use super::moving::{Passed, Tail, Way, Ways};
 use super::style::StyleWord;
 use crate::annotate::{ColorLegend, DegreeLine, GeometryLegend};
 use crate::camera::Camera;
@@ -25,9 +26,13 @@ use crate::geometry::{Geometry, RoundCones, Vertex};
 use crate::points::Points;
 use crate::volume::Header;
 use glam::DVec3;
+use std::sync::Arc;
 
-/// Pixels.
+/// Pixels; of the heads of comets.
 const WIDTH: f64 = 3.0;
+const COMET_WIDTH: f64 = 6.0;
+/// Tails of particles, of the times of the file.
+const TAIL: f64 = 0.125;
 /// Of arrow heads: how far apart in pixels, how wide and how long in radii.
 const APART_PIXELS: f64 = 60.0;
 const HEAD_RADII: f64 = 2.8;
@@ -45,6 +50,8 @@ pub struct DrawnLines {
     range: [f64; 2],
     /// Where lines of other frames of a film begin.
     seeds: Vec<FilmSeed>,
+    /// What other frames of a film draw up to their times.
+    ways: Option<Arc<Ways>>,
     barbs: Option<Barbs>,
     ground: Option<Ground>,
     /// What symbols mean, a sentence each.
@@ -60,6 +67,8 @@ struct LineSet {
     width_pixels: f64,
     /// Of each line, where they differ: how wide it is of that.
     shares: Option<Vec<f64>>,
+    /// The same of each place of each line.
+    tapers: Option<Vec<Vec<f64>>>,
     has_heads: bool,
     /// Of the map, in a section: half of its world thickness.
     on_section: Option<f64>,
@@ -97,6 +106,7 @@ impl DrawnLines {
                 .collect(),
             width_pixels: pixels.unwrap_or(SPHERE_PIXELS),
             shares: Some(kept().map(|(_, value)| share(value)).collect()),
+            tapers: None,
             has_heads: false,
             on_section: None,
             is_lifted: false,
@@ -113,6 +123,7 @@ impl DrawnLines {
     pub fn with(mut self, more: Self) -> Self {
         self.sets.extend(more.sets);
         self.seeds = more.seeds;
+        self.ways = more.ways;
         self.barbs = more.barbs;
         self.ground = more.ground;
         self.words = more.words;
@@ -137,19 +148,28 @@ impl DrawnLines {
         let mut drawn = Self::default();
         let at = of_film.map(|film| film.time);
         drawn.ground = Ground::read(scene, header, stretch, at, progress)?;
-        if let Some(map) = &scene.map.map {
-            drawn.add_map(map.lines(header)?, stretch, scene.section.half_thickness());
-        }
+        let of_map = scene.map.lines(header, &scene.input.limits())?;
+        let is_on_light = is_light(scene.picture.background());
+        drawn.add_map(of_map, stretch, scene.section.half_thickness(), is_on_light);
         if let Some(word) = scene.flow.flow {
             let of_seeds = of_film.filter(|film| !film.seeds.is_empty());
-            drawn.add_wind(word, scene, stretch, of_seeds, progress)?;
+            match of_film.and_then(|film| film.ways.map(|ways| (ways, ways.now(&film)))) {
+                Some((ways, now)) => drawn.add_ways(ways, word, scene, Some(now))?,
+                None => drawn.add_wind(word, scene, stretch, of_seeds, progress)?,
+            }
         }
         drawn.add_barbs(scene, stretch, of_film, progress)?;
         Ok(Some(drawn))
     }
 
     /// Lines of the Earth, on the terrain where there is any.
-    fn add_map(&mut self, lines: Vec<GroundLine>, stretch: DVec3, on_section: Option<f64>) {
+    fn add_map(
+        &mut self,
+        lines: Vec<GroundLine>,
+        stretch: DVec3,
+        on_section: Option<f64>,
+        is_on_light: bool,
+    ) {
         let terrain = self
             .ground
             .as_ref()
@@ -169,13 +189,19 @@ impl DrawnLines {
                     places: drawn.clone().flatten().collect(),
                 });
             }
-            let color = [decode_srgb(line.grey); 3];
+            // The brightest lines stand out most from the dark, and the darkest from a light background.
+            let grey = match is_on_light && self.ground.is_none() {
+                true => 1.0 - line.grey,
+                false => line.grey,
+            };
+            let color = [decode_srgb(grey); 3];
             self.sets.push(LineSet {
                 lines: drawn
                     .map(|part| part.map(|place| (place, color)).collect())
                     .collect(),
                 width_pixels: line.width,
                 shares: None,
+                tapers: None,
                 has_heads: false,
                 on_section,
                 is_lifted: self.ground.is_some(),
@@ -251,37 +277,97 @@ impl DrawnLines {
                 values.name
             ));
         }
-        let mut lines = Vec::new();
+        let mut ways = Vec::new();
         for (line, numbers) in traced.lines.iter().zip(&values.numbers) {
+            let seconds = |vertex: Option<&crate::flow::Vertex>| vertex.map_or(0.0, |v| v.time);
+            let ends = [line.vertices.first(), line.vertices.last()].map(seconds);
             for range in line.piece_ranges() {
                 let piece = line.vertices[range.clone()].iter().zip(&numbers[range]);
-                let drawn =
-                    piece.map(|(vertex, &value)| (stretch * vertex.place, colors.of(value)));
-                lines.push(drawn.collect());
+                let passed = piece.map(|(vertex, &value)| Passed {
+                    place: stretch * vertex.place,
+                    color: colors.of(value),
+                    seconds: vertex.time,
+                });
+                let passed = passed.collect();
+                ways.push(Way { passed, ends });
             }
         }
+        if word == FlowWord::Stream {
+            self.seeds = seeds_of(&traced.lines);
+        }
+        let ways = Ways {
+            ways,
+            seconds: traced
+                .wind
+                .times
+                .iter()
+                .map(|&(_, seconds)| seconds)
+                .collect(),
+            legend: one.is_none().then(|| ColorLegend {
+                function: colors.function(),
+                caption: traced.caption,
+                unit: traced.unit,
+            }),
+            range: colors.range,
+        };
+        self.add_ways(&ways, word, scene, None)?;
+        self.ways = (word == FlowWord::Path).then(|| Arc::new(ways));
+        Ok(())
+    }
+
+    /// Ways at a moment, or as long as they are.
+    fn add_ways(
+        &mut self,
+        ways: &Ways,
+        word: FlowWord,
+        scene: &SceneFlags,
+        now: Option<f64>,
+    ) -> Result<(), Error> {
+        let style = &scene.flow_style;
         let look = style.flow_style.unwrap_or(match word {
             FlowWord::Stream => StyleWord::Arrows,
             FlowWord::Path | FlowWord::Streak => StyleWord::Tube,
         });
+        if style.comet_time.is_some() && look != StyleWord::Comets {
+            return Err(Error::usage(
+                "--comet-time is of comets",
+                "--flow-style comets draws them",
+            ));
+        }
+        let tail = match (look, word, style.comet_time) {
+            (StyleWord::Tube | StyleWord::Arrows, _, _) => Tail::All,
+            (StyleWord::Comets, FlowWord::Streak, _) => {
+                return Err(Error::usage(
+                    "--flow streak with --flow-style comets: smoke has no heads",
+                    "--flow path has one for each particle",
+                ));
+            }
+            (StyleWord::Comets, _, Some(seconds)) => Tail::Comet(seconds),
+            (StyleWord::Comets, FlowWord::Path, None) => Tail::Comet(TAIL * ways.span()),
+            (StyleWord::Comets, FlowWord::Stream, None) => Tail::WholeComet,
+        };
+        let drawn = ways.ways.iter().filter_map(|way| way.drawn(now, tail));
+        let (lines, tapers): (Vec<_>, Vec<_>) = drawn.unzip();
+        let is_comet = look == StyleWord::Comets;
         self.sets.push(LineSet {
             lines,
-            width_pixels: style.flow_width.unwrap_or(WIDTH),
+            width_pixels: style
+                .flow_width
+                .unwrap_or(if is_comet { COMET_WIDTH } else { WIDTH }),
             shares: None,
+            tapers: is_comet.then_some(tapers),
             has_heads: look == StyleWord::Arrows,
             on_section: None,
             is_lifted: false,
         });
-        self.range = colors.range;
-        if word == FlowWord::Stream {
-            self.seeds = seeds_of(&traced.lines);
-        }
-        self.legend = one.is_none().then(|| ColorLegend {
-            function: colors.function(),
-            caption: traced.caption,
-            unit: traced.unit,
-        });
+        self.range = ways.range;
+        self.legend.clone_from(&ways.legend);
         Ok(())
+    }
+
+    /// What other frames of a film draw up to their times.
+    pub fn ways(&self) -> Option<&Arc<Ways>> {
+        self.ways.as_ref()
     }
 
     /// Values at the ends of their colours.
@@ -332,9 +418,16 @@ impl DrawnLines {
                     radius,
                     color,
                 };
-                match (&line[..], set.shares.is_some()) {
-                    ([symbol], true) => cones.add_symbol(vertex(symbol)),
-                    _ => cones.add_line(line.iter().map(vertex)),
+                let taper = set.tapers.as_ref().map(|tapers| &tapers[i]);
+                match (&line[..], set.shares.is_some(), taper) {
+                    ([symbol], true, _) => cones.add_symbol(vertex(symbol)),
+                    (_, _, None) => cones.add_line(line.iter().map(vertex)),
+                    (_, _, Some(taper)) => {
+                        cones.add_line(line.iter().zip(taper).map(|(place, share)| Vertex {
+                            radius: share * radius,
+                            ..vertex(place)
+                        }));
+                    }
                 }
                 if set.has_heads {
                     add_heads(&mut cones, line, radius, APART_PIXELS * pixel);
@@ -373,8 +466,11 @@ const LIGHT: [f64; 3] = [0.95; 3];
 
 /// sRGB of symbols that are to be seen: dark on a light background, else light.
 fn ink_on(background: Option<[f64; 4]>) -> [f64; 3] {
-    let is_light = background.is_some_and(|[r, g, b, a]| a > 0.5 && (r + g + b) / 3.0 > 0.6);
-    if is_light { DARK } else { LIGHT }
+    if is_light(background) { DARK } else { LIGHT }
+}
+
+fn is_light(background: Option<[f64; 4]>) -> bool {
+    background.is_some_and(|[r, g, b, a]| a > 0.5 && (r + g + b) / 3.0 > 0.6)
 }
 
 /// World length of a pixel at the distance of the target.

@@ -5,6 +5,7 @@
 //! wind at time t    linear between those of floor(t) and ceil(t)
 //! ```
 
+use super::moving::Ways;
 use super::wind::Wind;
 use crate::flow::{Direction, Limits, Line, stream_lines};
 use glam::DVec3;
@@ -24,6 +25,8 @@ pub struct FilmTime<'a> {
     pub time: f64,
     /// The lines of the first frame; none where lines are not those of its seeds.
     pub seeds: &'a [FilmSeed],
+    /// The ways of particles, where lines are these.
+    pub ways: Option<&'a Ways>,
 }
 
 /// The seeds of lines.

@@ -222,7 +222,7 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 /// Seconds of a word.
-fn duration(text: &str) -> Result<f64, String> {
+pub(super) fn duration(text: &str) -> Result<f64, String> {
     let units = [("min", 60.0), ("s", 1.0), ("h", 3600.0), ("d", 86400.0)];
     let with_unit = units.iter().find_map(|&(unit, seconds)| {
         let number = text.strip_suffix(unit)?;

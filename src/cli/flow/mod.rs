@@ -12,6 +12,7 @@ mod drawn;
 mod film;
 mod flags;
 mod ground;
+mod moving;
 mod seeds;
 mod style;
 mod tubes;
@@ -24,6 +25,7 @@ pub use drawn::DrawnLines;
 pub use film::{FilmSeed, FilmTime};
 pub use flags::{FlowFlags, FlowWord};
 pub use ground::{heights as ground_heights, sea_of};
+pub use moving::Ways;
 pub use style::FlowStyleFlags;
 pub use variable::{Variables, numbers};
 

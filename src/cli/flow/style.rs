@@ -1,5 +1,6 @@
 //! How lines look in a picture: the words.
 
+use super::flags::duration;
 use crate::cli::flags::Numbers;
 use crate::transfer::Colormap;
 use clap::{Args, ValueEnum};
@@ -14,6 +15,8 @@ pub enum StyleWord {
     Tube,
     /// A tube with heads along the wind
     Arrows,
+    /// A head with a tail that grows thin: particles that move in a film
+    Comets,
 }
 
 /// The words, none of them filled in.
@@ -24,7 +27,12 @@ pub struct FlowStyleFlags {
     #[arg(long, value_enum, value_name = "STYLE", requires = "flow", help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flow_style: Option<StyleWord>,
-    /// Width of lines in pixels, where the camera is turned to [default: 3]
+    /// How long comets are: seconds, or with s, min, h or d [default: the whole of a stream line; of path lines an eighth of
+    /// the times of the file]
+    #[arg(long, value_name = "T", value_parser = duration, requires = "flow", help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub comet_time: Option<f64>,
+    /// Width of lines in pixels, where the camera is turned to [default: 3, of the heads of comets 6]
     #[arg(long, value_name = "PX", value_parser = width, requires = "flow", help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flow_width: Option<f64>,

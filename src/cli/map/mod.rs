@@ -5,16 +5,19 @@
 //! graticule   meridians and parallels every 1, 2, 5, 10, 15 or 30 degrees, four of them at least
 //! ```
 
+mod coast;
 mod earth;
 mod project;
 
 use super::Error;
-use crate::volume::{Grid, Header};
+use crate::volume::{Grid, Header, Limits};
 use clap::Args;
+use coast::CoastFile;
 use earth::{Lines, earth};
 use glam::DVec3;
-use project::Projection;
+use project::{FINE, Projection, projected_line};
 use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
 use std::{fmt, str::FromStr};
 
 /// What is drawn of the Earth.
@@ -37,6 +40,45 @@ pub struct MapFlags {
     #[arg(long, value_name = "LIST", num_args = 0..=1, default_missing_value = MapWords::ALL, help_heading = "Lines")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub map: Option<MapWords>,
+    /// The coast of --map by the lines and polygons of a file, in degrees: a shapefile or GeoJSON
+    #[arg(long, value_name = "FILE.shp|.geojson", help_heading = "Lines")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub coast: Option<CoastFile>,
+}
+
+impl MapFlags {
+    /// The lines around a volume.
+    ///
+    /// # Errors
+    /// Where it has no place on the Earth, or none is known; where the file of the coast cannot be read, or is not asked for.
+    pub fn lines(&self, header: &Header, limits: &Limits) -> Result<Vec<GroundLine>, Error> {
+        if self.coast.is_some() && !self.map.is_some_and(|words| words.coast) {
+            return Err(Error::usage(
+                "--coast FILE is the coast of --map",
+                "--map coast draws it",
+            ));
+        }
+        let Some(words) = self.map else {
+            return Ok(Vec::new());
+        };
+        words.lines(header, || match &self.coast {
+            Some(file) => file.lines(limits),
+            None => Ok(&earth().coast),
+        })
+    }
+
+    /// The file of the coast.
+    pub fn file(&self) -> Option<&Path> {
+        self.coast.as_ref().map(CoastFile::path)
+    }
+
+    /// The same words with another path.
+    pub fn with_paths(&self, path: impl Fn(&Path) -> PathBuf) -> Self {
+        Self {
+            coast: self.file().map(|file| path(file).into()),
+            ..self.clone()
+        }
+    }
 }
 
 /// Whether a place of the world lies in the southern hemisphere; none does where the latitude is not known.
@@ -62,8 +104,6 @@ pub struct GroundLine {
 const MARGIN: f64 = 0.2;
 /// Degrees between lines of a graticule.
 const STEPS: [f64; 8] = [0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0];
-/// Degrees between places of a line that is bent on the map.
-const FINE: f64 = 0.25;
 /// Grey and pixels of coast, borders and graticule.
 const COAST: (f32, f64) = (0.8, 2.0);
 const BORDERS: (f32, f64) = (0.6, 1.5);
@@ -88,11 +128,11 @@ impl MapWords {
         self.terrain
     }
 
-    /// The lines around a volume.
-    ///
-    /// # Errors
-    /// Where it has no place on the Earth, or none is known.
-    pub fn lines(&self, header: &Header) -> Result<Vec<GroundLine>, Error> {
+    fn lines<'a>(
+        self,
+        header: &Header,
+        coast: impl FnOnce() -> Result<&'a Lines, Error>,
+    ) -> Result<Vec<GroundLine>, Error> {
         if !(self.coast || self.borders || self.graticule.is_some()) {
             return Ok(Vec::new());
         }
@@ -136,7 +176,7 @@ impl MapWords {
             add(&earth().borders, BORDERS);
         }
         if self.coast {
-            add(&earth().coast, COAST);
+            add(coast()?, COAST);
         }
         Ok(lines)
     }
@@ -216,10 +256,6 @@ impl Area {
 
     /// The part of a straight piece in the rectangle (Liang and Barsky 1984).
     fn clipped(&self, a: [f64; 2], b: [f64; 2]) -> Option<[[f64; 2]; 2]> {
-        // A piece from one edge of the map to the other goes around the Earth.
-        if (b[0] - a[0]).abs() > 0.5 * self.width() {
-            return None;
-        }
         let (mut from, mut to) = (0.0_f64, 1.0_f64);
         for k in [0, 1] {
             let way = b[k] - a[k];
@@ -253,25 +289,22 @@ fn projected<'a>(
         Projection::Degrees(_) => &[-360.0, 0.0, 360.0],
         Projection::Map { .. } => &[0.0],
     };
+    let is_near = |line: &Vec<[f64; 2]>| {
+        (0..2).all(|k| {
+            let [low, high] = [area.low[k], area.high[k]];
+            line.iter().any(|p| p[k] >= low) && line.iter().any(|p| p[k] <= high)
+        })
+    };
     let mut all = Vec::new();
     for line in lines {
-        for turn in turns {
-            let mut part = Vec::new();
-            for &[longitude, latitude] in line {
-                match projection.place([longitude + turn, latitude]) {
-                    Some(place) => part.push(place),
-                    None => all.push(std::mem::take(&mut part)),
+        for &turn in turns {
+            projected_line(projection, line, turn, |part| {
+                if is_near(&part) {
+                    all.push(part);
                 }
-            }
-            all.push(part);
+            });
         }
     }
-    all.retain(|line: &Vec<[f64; 2]>| {
-        let is_near = |k: usize, [low, high]: [f64; 2]| {
-            line.iter().any(|p| p[k] >= low) && line.iter().any(|p| p[k] <= high)
-        };
-        (0..2).all(|k| is_near(k, [area.low[k], area.high[k]]))
-    });
     all
 }
 

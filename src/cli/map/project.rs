@@ -18,6 +18,9 @@ const MOST_OFF: f64 = 0.05;
 /// Kilometres.
 const RADIUS: f64 = 6370.0;
 
+/// Degrees between places of a line that is bent on the map.
+pub(super) const FINE: f64 = 0.25;
+
 /// Takes places of the Earth to the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Projection {
@@ -83,6 +86,20 @@ impl Projection {
         (off > MOST_OFF * corner.step).then_some(off)
     }
 
+    /// True where the line between two longitudes goes over the edge of the map: on it, it would go around the Earth.
+    fn is_over_edge(&self, a: f64, b: f64) -> bool {
+        match *self {
+            Self::Degrees(_) => (b - a).abs() > 180.0,
+            Self::Map {
+                kind: MapKind::PolarStereographic,
+                ..
+            } => false,
+            Self::Map { longitude, .. } => {
+                (wrapped(longitude, b) - wrapped(longitude, a)).abs() > 180.0
+            }
+        }
+    }
+
     /// The latitude in degrees of x and y of the world.
     pub fn latitude(&self, [x, y]: [f64; 2]) -> f64 {
         let Self::Map {
@@ -133,7 +150,7 @@ impl Projection {
             };
             return Some([longitude * x, latitude * y]);
         };
-        let l = ((longitude - middle + 180.0).rem_euclid(360.0) - 180.0).to_radians();
+        let l = wrapped(middle, longitude).to_radians();
         let p = latitude.to_radians();
         let [p1, p2] = true_latitudes.map(f64::to_radians);
         let [x, y] = match kind {
@@ -160,6 +177,66 @@ impl Projection {
             .all(|n| n.is_finite() && n.abs() < 1e6)
             .then_some(place)
     }
+}
+
+/// Degrees from the middle of a map to a longitude, -180 to 180.
+fn wrapped(middle: f64, longitude: f64) -> f64 {
+    (longitude - middle + 180.0).rem_euclid(360.0) - 180.0
+}
+
+/// How often a longitude is to be turned around the Earth, so that from another one it lies the shorter way; none where both
+/// are as long.
+pub(super) fn turns(from: f64, to: f64) -> f64 {
+    let turns = (from - to) / 360.0;
+    if turns.abs() > 0.5 {
+        turns.round()
+    } else {
+        0.0
+    }
+}
+
+/// How many straight pieces of a map stand for a line that is straight in longitude and latitude.
+pub(super) fn pieces(a: [f64; 2], b: [f64; 2]) -> u32 {
+    let degrees = (b[0] - a[0]).abs().max((b[1] - a[1]).abs());
+    (degrees / FINE).ceil().max(1.0) as u32
+}
+
+/// Takes a line to the map, so many degrees to the east; gives its parts between edges of the map.
+pub(super) fn projected_line(
+    projection: &Projection,
+    line: &[[f64; 2]],
+    turn: f64,
+    mut give: impl FnMut(Vec<[f64; 2]>),
+) {
+    let is_bent = matches!(projection, Projection::Map { .. });
+    let mut part = Vec::new();
+    let mut before: Option<[f64; 2]> = None;
+    for &[longitude, latitude] in line {
+        let mut place = [longitude + turn, latitude];
+        let from = before.unwrap_or(place);
+        if is_bent {
+            place[0] += 360.0 * turns(from[0], place[0]);
+        }
+        let count = if is_bent { pieces(from, place) } else { 1 };
+        let mut last = from[0];
+        for i in 1..=count {
+            let part_of_way = f64::from(i) / f64::from(count);
+            let at = match i == count {
+                true => place,
+                false => [0, 1].map(|k| from[k] + part_of_way * (place[k] - from[k])),
+            };
+            if projection.is_over_edge(last, at[0]) {
+                give(std::mem::take(&mut part));
+            }
+            match projection.place(at) {
+                Some(place) => part.push(place),
+                None => give(std::mem::take(&mut part)),
+            }
+            last = at[0];
+        }
+        before = Some(place);
+    }
+    give(part);
 }
 
 /// tan(45 + p / 2).
@@ -205,6 +282,48 @@ mod tests {
         }
         let degrees = Projection::Degrees([100.0, 111.0]);
         assert_eq!(degrees.latitude([7.0, -222.0]), -2.0);
+    }
+
+    #[test]
+    fn lines_are_straight_in_degrees_and_end_at_the_edge_of_the_map() {
+        let projection = |kind, true_latitudes: [f64; 2]| {
+            let map = MapProjection {
+                kind,
+                true_latitudes: true_latitudes.map(Some),
+                standard_longitude: Some(-90.0),
+                center: Some([40.0, -90.0]),
+                corner: None,
+            };
+            Projection::of_map(&map).expect("a map")
+        };
+        let parts_of = |projection: &Projection, line: &[[f64; 2]], turn: f64| {
+            let mut parts = Vec::new();
+            projected_line(projection, line, turn, |part| parts.push(part));
+            parts
+        };
+        let lambert = projection(MapKind::Lambert, [30.0, 60.0]);
+        // A border on a parallel, 60 degrees long.
+        let line = [[-120.0, 49.0], [-60.0, 49.0]];
+        let parts = parts_of(&lambert, &line, 0.0);
+        assert_eq!(parts.iter().map(Vec::len).collect::<Vec<_>>(), [241]);
+        for (i, place) in parts[0].iter().enumerate() {
+            let wanted = lambert.place([-120.0 + 0.25 * i as f64, 49.0]);
+            assert_eq!(Some(*place), wanted);
+        }
+        // The edge of the maps is at 90 east, and lines go the shorter way over the 180th meridian.
+        let line = [[89.5, 10.0], [90.5, 12.0], [179.5, 12.0], [-179.5, 12.0]];
+        for projection in [lambert, projection(MapKind::Mercator, [20.0, 20.0])] {
+            let parts = parts_of(&projection, &line, 0.0);
+            let counts: Vec<usize> = parts.iter().map(Vec::len).collect();
+            // 8 pieces of two degrees up, half of them before the edge; 356 of 89 degrees, 4 over the meridian.
+            assert_eq!(counts, [4, 5 + 356 + 4], "{projection:?}");
+        }
+        let polar = projection(MapKind::PolarStereographic, [60.0, 60.0]);
+        assert_eq!(parts_of(&polar, &line, 0.0).len(), 1);
+        let degrees = Projection::Degrees([2.0, 3.0]);
+        let parts = parts_of(&degrees, &line, 360.0);
+        assert_eq!(parts[0], [[899.0, 30.0], [901.0, 36.0], [1079.0, 36.0]]);
+        assert_eq!(parts[1], [[361.0, 36.0]]);
     }
 
     /// By PROJ 9 (pyproj), +R=6370000: 5 degrees to the north and 7 to the east of a place, from it, in kilometres.

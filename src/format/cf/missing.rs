@@ -73,6 +73,20 @@ impl Missing {
         }
     }
 
+    /// A number as its type holds it, with all of its digits; `None` where it means that there is no data.
+    #[cfg(feature = "netcdf")]
+    pub(crate) fn known(&self, number: f64, stored: VoxelType) -> Option<f64> {
+        let kept = in_type(number, stored);
+        let is_missing = kept.is_nan()
+            || self.fill == Some(kept)
+            || self.others.contains(&kept)
+            || kept < self.valid[0]
+            || kept > self.valid[1];
+        // Those of unsigned types were counted from below.
+        let is_wrapped = number < 0.0 && kept >= 0.0;
+        (!is_missing).then_some(if is_wrapped { kept } else { number })
+    }
+
     /// True where voxels stay as they were read.
     fn is_one_number(&self) -> bool {
         self.others.is_empty() && self.valid == Self::NONE.valid

@@ -26,6 +26,8 @@ mod model;
 mod open;
 mod place;
 mod regular;
+#[cfg(feature = "netcdf")]
+mod sampled;
 mod time;
 mod units;
 mod values;
@@ -37,3 +39,7 @@ pub(crate) use grid::{Grid, Role};
 pub(crate) use missing::Missing;
 pub(crate) use model::{Arrays, Attributes, Contents, Dimension, Kind, Value, Variable};
 pub(crate) use open::open;
+#[cfg(feature = "netcdf")]
+pub(crate) use sampled::{Samples, Vertical, is_sampled, samples};
+#[cfg(feature = "netcdf")]
+pub(crate) use units::Measure;

@@ -34,7 +34,7 @@ const CACHE_BYTES: u64 = 64 << 20;
 
 impl Hdf5 {
     /// Opens without looking for data sets. Gives the file's length too.
-    pub(super) fn open(path: &Path, limits: &Limits) -> Result<(Self, u64), Problem> {
+    pub(in crate::format) fn open(path: &Path, limits: &Limits) -> Result<(Self, u64), Problem> {
         let (file, metadata) = open_regular(path)?;
         let file_bytes = metadata.len();
         let bytes = |bytes: u64| usize::try_from(bytes).unwrap_or(usize::MAX);

@@ -11,6 +11,7 @@ use super::convert::piece_of;
 use super::fence::fenced;
 use super::hdf5::{Hdf5, filters, problem_of as hdf5_problem};
 use super::place::open_regular;
+use super::points::{PointColumns, PointFile, sampled};
 use super::problem::{at, escape, invalid, unsupported};
 use crate::volume::{
     Format, Limits, Piece, Problem, ReadError, Source, VolumeSelection, VoxelType,
@@ -56,7 +57,43 @@ fn opened(
     limits: &Limits,
 ) -> Result<Box<dyn Source>, ReadError> {
     let (file, file_bytes) = NetCdf::open(path, hdf5, limits).map_err(at(path))?;
+    if cf::is_sampled(&file) {
+        let columns = PointColumns {
+            value: wanted.variable.clone(),
+            ..PointColumns::default()
+        };
+        return Ok(Box::new(sampled::open(&file, &columns, limits)?));
+    }
     cf::open(Arc::new(file), file_bytes, Format::NetCdf, wanted, limits)
+}
+
+/// Opens the samples of a file that says that it has samples.
+pub(super) fn open_samples(
+    path: &Path,
+    columns: &PointColumns,
+    limits: &Limits,
+) -> Result<PointFile, ReadError> {
+    let file = open_either(path, limits).map_err(at(path))?;
+    if !cf::is_sampled(&file) {
+        let wanted = "`featureType` of samples, such as point: this is a grid";
+        return Err(at(path)(invalid(NETCDF, "featureType", wanted, "none")));
+    }
+    sampled::open(&file, columns, limits)
+}
+
+/// True for a file that says that it has samples, and can be opened.
+pub(super) fn holds_samples(path: &Path, limits: &Limits) -> bool {
+    open_either(path, limits).is_ok_and(|file| cf::is_sampled(&file))
+}
+
+/// A file of the classic formats, or of NetCDF-4.
+fn open_either(path: &Path, limits: &Limits) -> Result<NetCdf, Problem> {
+    let first = super::first_bytes(path)?;
+    let hdf5 = match super::hdf5::recognizes(&first) {
+        true => Some(Hdf5::open(path, limits)?.0),
+        false => None,
+    };
+    Ok(NetCdf::open(path, hdf5, limits)?.0)
 }
 
 /// An open file, and what its variables are.

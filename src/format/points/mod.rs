@@ -11,6 +11,7 @@
 //! | `.npy` | rows of an array `[N, 4]` to `[N, 6]` ([`open_npy`]) |
 //! | `.ply` | vertices, with the first other property as their value |
 //! | `.vtp` | points of PolyData, with an array of point data |
+//! | `.nc` | samples of CF's discrete sampling geometries: points, series, profiles, trajectories |
 //!
 //! A row without a finite number where one is wanted is dropped and counted. Points at one place are kept and counted.
 
@@ -24,6 +25,8 @@ mod ply;
 mod quantity;
 mod roles;
 mod rows;
+#[cfg(feature = "netcdf")]
+pub(super) mod sampled;
 mod source;
 mod table;
 mod vtp;
@@ -44,6 +47,22 @@ const ENDINGS: [&str; 4] = ["csv", "tsv", "ply", "vtp"];
 /// True where a file holds scattered points, by its name.
 pub fn holds_points(path: &Path) -> bool {
     ENDINGS.iter().any(|ending| ends_with(path, ending))
+}
+
+/// True where a NetCDF file, which ends with `.nc`, `.nc4` or `.cdf`, says that it holds samples and no grid. It is opened
+/// for that.
+pub fn holds_samples(path: &Path, limits: &Limits) -> bool {
+    let is_named = ["nc", "nc4", "cdf"]
+        .iter()
+        .any(|ending| ends_with(path, ending));
+    #[cfg(feature = "netcdf")]
+    let is_sampled = || super::netcdf::holds_samples(path, limits);
+    #[cfg(not(feature = "netcdf"))]
+    let is_sampled = || {
+        let _ = limits;
+        false
+    };
+    is_named && is_sampled()
 }
 
 fn ends_with(path: &Path, ending: &str) -> bool {
@@ -70,6 +89,10 @@ pub fn open_points(
                 Err(at(path)(invalid("npy", key, wanted, "one")))
             }
         };
+    }
+    #[cfg(feature = "netcdf")]
+    if super::netcdf::recognizes(&first) || super::hdf5::recognizes(&first) {
+        return super::netcdf::open_samples(path, columns, limits);
     }
     if ply::recognizes(&first) || ends_with(path, "ply") {
         ply::open(path, columns, limits)

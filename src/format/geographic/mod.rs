@@ -1,0 +1,73 @@
+//! Lines on the Earth from files: shapefiles and GeoJSON, told apart by content.
+//!
+//! ```text
+//! file -> lines of [longitude, latitude], degrees
+//! ```
+//!
+//! Of polygons these are their rings; points have no line, and heights and measures are passed over. What is not in degrees
+//! is refused: longitudes are -360 to 360, latitudes -90 to 90. A file is read whole, and what it holds never takes much
+//! more memory than its bytes.
+
+mod geojson;
+mod shapefile;
+
+use super::convert::to_u64;
+use super::place::open_regular;
+use super::problem::{at, io};
+use crate::volume::{Limits, Problem, ReadError};
+use std::io::Read;
+use std::path::Path;
+
+/// Longitudes and latitudes along a line, degrees.
+pub type GeographicLine = Vec<[f64; 2]>;
+
+/// Coasts of the whole Earth at 1 : 10 million have a tenth of this, text or not.
+const MOST_BYTES: u64 = 256 << 20;
+/// Degrees that the last digits of a latitude may be off.
+const ROUNDING: f64 = 1e-6;
+
+/// The lines of a file.
+///
+/// # Errors
+/// The file is of neither kind, is cut, holds no lines, or says something that cannot be. The error names the file, the
+/// field, what was wanted and what was found.
+pub fn read_lines(path: &Path, limits: &Limits) -> Result<Vec<GeographicLine>, ReadError> {
+    let bytes = bytes_of(path, limits).map_err(at(path))?;
+    let lines = match &bytes {
+        bytes if shapefile::recognizes(bytes) => shapefile::lines(bytes),
+        bytes if geojson::recognizes(bytes) => geojson::lines(bytes),
+        _ => Err(Problem::UnknownFormat(
+            ": wanted a shapefile (.shp) or GeoJSON".to_owned(),
+        )),
+    };
+    lines.map_err(at(path))
+}
+
+fn bytes_of(path: &Path, limits: &Limits) -> Result<Vec<u8>, Problem> {
+    let (file, metadata) = open_regular(path)?;
+    let most = MOST_BYTES.min(limits.max_bytes);
+    let mut bytes = Vec::new();
+    // It may grow while it is read.
+    let found = file.take(most.saturating_add(1)).read_to_end(&mut bytes);
+    found.map_err(io("reading the file"))?;
+    let count = to_u64(bytes.len()).max(metadata.len());
+    if count > most {
+        return Err(Problem::Limit {
+            what: "a file of lines on the Earth".to_owned(),
+            wanted_bytes: count,
+            limit_bytes: most,
+        });
+    }
+    Ok(bytes)
+}
+
+/// A place in degrees, or what is wrong with it: its number, what would do.
+fn checked([longitude, latitude]: [f64; 2]) -> Result<[f64; 2], (f64, &'static str)> {
+    if !(-360.0..=360.0).contains(&longitude) {
+        return Err((longitude, "a longitude from -360 to 360 degrees"));
+    }
+    if !(-90.0 - ROUNDING..=90.0 + ROUNDING).contains(&latitude) {
+        return Err((latitude, "a latitude from -90 to 90 degrees"));
+    }
+    Ok([longitude, latitude.clamp(-90.0, 90.0)])
+}
