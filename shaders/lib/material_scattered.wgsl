@@ -5,7 +5,7 @@
 // Where light is not followed from here on, T comes from the light volume. CPU reference: src/technique/scattering/reference.rs.
 
 #import transfer_{transfer}
-#import light
+#import light_depth
 #import light_ray
 #import phase
 
@@ -16,12 +16,12 @@ fn material_of(sample: Sample) -> Classified {
         return material;
     }
     let voxel = voxel_of(sample.place);
-    var light = ambient_at(voxel, sample.ray_direction) * frame.path_sky;
+    var light = scattered_light(0u, voxel, frame.occlusion_strength != 0.0) * frame.path_sky;
     for (var i = 0u; i < frame.light_count; i++) {
         let way = frame.light_directions[i].xyz;
         var through = 1.0;
         if frame.scattering_depth == 0.0 {
-            through = lamp_at(i, voxel);
+            through = scattered_light(frame.shadow_bundle + i, voxel, frame.has_shadows != 0u);
         } else {
             through = through_to(voxel, way);
         }

@@ -209,11 +209,8 @@ impl View<'_> {
         fields.light_cells = plan.cells.map(|n| n as f32);
         fields.light_cells_per_voxel = plan.cell_voxels.map(|n| (1.0 / n) as f32);
         let settings = self.settings;
-        // A surface fills the cell that it lies in. Light that is scattered is that at the sample itself.
-        fields.light_reach = match settings.single_scattering {
-            None => plan.cell_length as f32,
-            Some(_) => 0.0,
-        };
+        // A surface fills the cell that it lies in.
+        fields.light_reach = plan.cell_length as f32;
         let occlusion = settings.occlusion();
         fields.occlusion_strength = match settings.has_hindered_sky() {
             true => 1.0,

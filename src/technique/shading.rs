@@ -188,7 +188,7 @@ impl<R: Real> Lamps<'_, R> {
     }
 
     /// Part of the light of a lamp.
-    pub(super) fn lamp(&self, frame: &Frame, lamp: usize) -> R {
+    fn lamp(&self, frame: &Frame, lamp: usize) -> R {
         let found = self
             .field
             .map(|field| field.lamp_at(frame, lamp, self.voxel));

@@ -15,12 +15,24 @@ pub fn scattered<R: Real>(
     extinction_at: impl Fn([R; 3]) -> R,
 ) -> [R; 3] {
     let pi = R::from_f64(std::f64::consts::PI);
-    let mut light = scale(vector(frame.path_sky), lamps.ambient(frame));
+    let one = R::from_f64(1.0);
+    let in_volume = |bundle: u32| {
+        let found = lamps
+            .field
+            .map(|field| field.scattered_at(frame, bundle, lamps.voxel));
+        found.unwrap_or(one)
+    };
+    let of_sky = match frame.occlusion_strength != 0.0 {
+        true => in_volume(0),
+        false => one,
+    };
+    let mut light = scale(vector(frame.path_sky), of_sky);
     let lights = frame.light_directions.iter().zip(&frame.light_colors);
     for (i, (&[x, y, z, _], &[r, g, b, _])) in lights.take(frame.light_count as usize).enumerate() {
         let way = vector([x, y, z]);
         let through = match frame.scattering_depth == 0.0 {
-            true => lamps.lamp(frame, i),
+            true if frame.has_shadows != 0 => in_volume(frame.shadow_bundle + i as u32),
+            true => one,
             false => through_to(frame, lamps.voxel, way, &extinction_at),
         };
         let part = pi * phase_value(frame, dot(lamps.ray_direction, way)) * through;

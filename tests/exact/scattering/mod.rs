@@ -149,7 +149,7 @@ fn steps_that_do_not_fit_end_where_the_layer_does() {
     is_within("rests", &drawn(&scene), wanted, 2e-5);
 }
 
-/// In uniform matter only the light volume's interpolation is off, by (x^2 / 8) of a cell of optical depth x along the light.
+/// In uniform matter optical depths are the same between nodes. Those of nodes are sums of lengths in f32, some hundred of them.
 #[test]
 fn a_light_volume_gives_what_light_from_each_sample_gives() {
     let (depth, mu, mu0, voxels) = (1.92, 0.5, 0.7, 96);
@@ -165,8 +165,7 @@ fn a_light_volume_gives_what_light_from_each_sample_gives() {
     let wanted = 0.25 * sum_of_layer(depth, [mu, mu0], x);
     let settings = single(SingleScattering::Volume, path.clone());
     let scene_of_volume = scene(&volume, &function, &camera, &settings, [6, 5]);
-    let part = 2e-5 + (x / mu0).powi(2) / 8.0;
-    is_within("volume", &drawn(&scene_of_volume), wanted, part);
+    is_within("volume", &drawn(&scene_of_volume), wanted, 5e-5);
     // Nothing in the way: the opacity of the layer.
     let open = single(SingleScattering::Open, path);
     let scene_of_open = scene(&volume, &function, &camera, &open, [6, 5]);
