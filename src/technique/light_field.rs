@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! A = k mean of (1 - exp(-sigma_i L))     sigma = -ln(1 - min(A, 1 - 2^-12)) / L        of a cell
+//! sigma = k mean of sigma_i                                                              of one where light is scattered
 //! open = sum over r of w_r exp(-sum of sigma d)                                          at a node, of a bundle
 //! ambient light at p = 1 - s (1 - open(p + d v))     light i: open(p + d l_i)            trilinear between nodes
 //! light that is scattered at p: open(p), ln open trilinear between nodes
@@ -134,17 +135,24 @@ fn cell<R: Real>(
     let n = |x: u32| R::from_f64(x.into());
     let low: [R; 3] = std::array::from_fn(|k| n(cell[k]) * size[k]);
     let [lx, ly, lz] = plan.looks;
-    let mut opacity = R::from_f64(0.0);
+    let amount_in = |extinction: R| match plan.adds_extinctions {
+        true => extinction,
+        false => opacity_over(extinction, length),
+    };
+    let mut amount = R::from_f64(0.0);
     for look in (0..lz).flat_map(|z| (0..ly).flat_map(move |y| (0..lx).map(move |x| [x, y, z]))) {
         let place = std::array::from_fn(|k| {
             low[k] + (n(look[k]) + R::from_f64(0.5)) * (size[k] / n(plan.looks[k]))
         });
         if let Some(extinction) = extinction_at(place) {
-            opacity = opacity + opacity_over(extinction, length);
+            amount = amount + amount_in(extinction);
         }
     }
-    let opacity = opacity * (kept_share(frame, low, size) / n(lx * ly * lz));
-    extinction(opacity, length)
+    let amount = amount * (kept_share(frame, low, size) / n(lx * ly * lz));
+    match plan.adds_extinctions {
+        true => amount,
+        false => extinction(amount, length),
+    }
 }
 
 /// The part of a cell that no crop and no clip plane cuts away.

@@ -3,6 +3,7 @@
 //! ```text
 //! cells of an axis   min(voxels, 128), all of one size: none is smaller than a voxel
 //! looks at a cell    ceil(voxels of the cell) along each axis, at most 4; of several grids those of the finest
+//! sky                32 paths all around, from the node to the end of the grid
 //! occlusion          32 paths all around, from one cell to the radius
 //! shadow             8 paths over the disc of the light, from the node to the end of the grid
 //! ```
@@ -65,6 +66,9 @@ pub struct LightPlan {
     pub cell_length: f64,
     /// Looks at a cell along each axis.
     pub looks: [u32; 3],
+    /// A cell has the mean of the extinctions that are found there, and not that of opacities: where light is asked for inside
+    /// of matter.
+    pub adds_extinctions: bool,
     /// How many bundles of paths there are: that of occlusion first, then one a light.
     pub bundle_count: u32,
     /// As `shaders/light_volume.wgsl` reads them.
@@ -88,6 +92,7 @@ impl LightPlan {
                 .reduce(f64::min)
                 .unwrap_or_else(|| view.grid.smallest_spacing()),
             looks: cell_voxels.map(|n| (n.ceil() as u32).clamp(1, MAX_LOOKS)),
+            adds_extinctions: view.settings.single_scattering.is_some(),
             bundle_count: 0,
             paths: Vec::new(),
         }
@@ -133,6 +138,7 @@ impl LightPlan {
             cell_voxels: self.cell_voxels.map(|n| n as f32),
             cell_length: self.cell_length as f32,
             looks: self.looks,
+            adds_extinctions: self.adds_extinctions.into(),
         }
         .into()
     }
@@ -348,6 +354,7 @@ mod tests {
                 cell_voxels: [1.0; 3],
                 cell_length: 1.0,
                 looks: [1; 3],
+                adds_extinctions: false,
                 bundle_count: 0,
                 paths: Vec::new(),
             };

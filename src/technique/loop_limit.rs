@@ -207,6 +207,7 @@ impl View<'_> {
             wanted,
             limit,
             samples_per_voxel,
+            follows_light: of_light > turns,
         })
     }
 }

@@ -56,6 +56,7 @@ mod point_grid;
 mod points;
 mod presets;
 mod real;
+mod scattering;
 mod section;
 mod section_at;
 mod sheet;
