@@ -3,7 +3,7 @@
 //     T = exp(-sum of sigma_j h_j)        at (j + 1/2) h; the last, shorter segment at its own middle
 //
 // Four samples at once, so that loops have a fourth of the turns, which some drivers count. What empty space leaves out
-// would have added nothing. CPU reference: src/technique/scattering/reference.rs.
+// would have added nothing. CPU reference: src/technique/scattered_light.rs.
 
 #import ray
 #import distance_map

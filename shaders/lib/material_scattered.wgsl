@@ -2,7 +2,7 @@
 //
 //     S = albedo (sum over lights of p(c) E T + T_sky sky)        E = pi colour,  c between the directions of travel
 //
-// Where light is not followed from here on, T comes from the light volume. CPU reference: src/technique/scattering/reference.rs.
+// Where light is not followed from here on, T comes from the light volume. CPU reference: src/technique/scattered_light.rs.
 
 #import transfer_{transfer}
 #import light_depth

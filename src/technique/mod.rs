@@ -60,7 +60,9 @@ mod recording;
 #[doc(hidden)]
 pub mod reference;
 mod registry;
-pub mod scattering;
+mod scattered_light;
+mod scattering;
+mod scattering_rules;
 #[doc(hidden)]
 pub mod second_derivative;
 #[doc(hidden)]
@@ -97,6 +99,7 @@ pub use patches::{BATCH_SLICES, PatchRoom, Patches};
 pub use per_mode::{DEFAULT_ATTENUATION, Level, PerMode};
 pub use ray_tiles::{RayBindings, RayTiles};
 pub use recording::{Recording, parameter_ring};
+pub(crate) use scattered_light::scattered;
 pub use scattering::SingleScattering;
 pub use shading::{Light, LightSpace, Shading};
 pub use shear_warp::Intermediate;

@@ -7,10 +7,9 @@ use crate::scene::Beside;
 use crate::shaders::Frame;
 use crate::technique::gradient::gradient_of;
 use crate::technique::gradient_taps::weighted_gradient;
-use crate::technique::scattering::reference::scattered;
 use crate::technique::second_derivative::second_derivative_of;
 use crate::technique::shading::{Lamps, shade};
-use crate::technique::{Filter, Operator};
+use crate::technique::{Filter, Operator, scattered};
 use crate::transfer::{GradientMagnitude, PackedWidgets, classify_by_gradient};
 use crate::volume::Volume;
 

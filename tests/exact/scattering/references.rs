@@ -1,11 +1,12 @@
 //! The shader against its CPU references, and what changes no bit.
 
-use crate::pathtrace::light;
+use crate::pathtrace::{around_blobs, light, matter, scene};
 use crate::shared::{
     PictureCase, compare, device, device_with, oblique_shots, ramps, sheared_affine, volume_of,
     waves,
 };
-use glam::dvec3;
+use glam::{DAffine3, dvec3};
+use stratavox::camera::Camera;
 use stratavox::gpu::Caps;
 use stratavox::offscreen::{self, Renderer, reference};
 use stratavox::picture::ColorSpace;
@@ -104,26 +105,42 @@ fn drawn(renderer: &mut Renderer, scene: &Scene) -> Vec<[f32; 4]> {
     rendered.expect("a picture").picture.pixels
 }
 
+/// Two balls in a box of 8 x 6 x 5 macro cells, most of them empty.
 #[test]
 fn what_empty_space_leaves_out_changes_no_bit() {
-    let volume = field(false);
-    let mut transfer = ramps();
-    // Nothing under the middle.
-    for point in &mut transfer.opacity {
-        point.opacity *= f64::from(u8::from(point.value > 0.0));
-    }
+    let place = DAffine3::from_scale(dvec3(1.0, 0.8, 1.3));
+    let volume = volume_of([64, 48, 40], place, |p| {
+        let near = p
+            .distance(dvec3(14.0, 12.0, 10.0))
+            .min(p.distance(dvec3(48.0, 34.0, 28.0)));
+        1.0 - near / 12.0
+    });
+    let transfer = matter([0.9, 0.7, 0.4], &[(0.0, 0.0), (0.5, 0.8), (1.0, 0.3)]);
+    let camera = Camera {
+        eye: dvec3(110.0, 80.0, 90.0),
+        target: dvec3(32.0, 19.0, 26.0),
+        ..around_blobs()
+    };
     let mut renderer = Renderer::new(device(), &volume).expect("a renderer");
-    for shot in shots() {
+    // The light goes through the other ball, and along an axis.
+    for way in [dvec3(-34.0, -17.6, -23.4), dvec3(0.0, 0.0, 1.0)] {
         for scattering in [SingleScattering::Volume, SingleScattering::March] {
             let [with, without] = [true, false].map(|skip| {
-                let shot = shot.with(|settings| {
-                    settings.single_scattering = Some(scattering);
-                    settings.path = lit();
-                    settings.skip = skip;
-                });
-                drawn(&mut renderer, &shot.scene(&volume, Some(&transfer)))
+                let path = PathTracing {
+                    lights: vec![light(way)],
+                    ..lit()
+                };
+                let settings = Settings {
+                    single_scattering: Some(scattering),
+                    path,
+                    skip,
+                    ..Settings::default()
+                };
+                let scene = scene(&volume, &transfer, &camera, &settings, [60, 50]);
+                drawn(&mut renderer, &scene)
             });
-            assert!(with == without, "{scattering:?}, {}", shot.what());
+            assert!(with == without, "{scattering:?}, {way}");
+            assert!(with.iter().filter(|pixel| pixel[0] > 0.02).count() > 100);
         }
     }
 }

@@ -1,9 +1,8 @@
 //! What does not go together with single scattering.
 
-use super::SingleScattering;
+use super::{Error, Filter, Lattice, Mode, Settings, SingleScattering, SkipBy, Technique};
 use crate::picture::ColorSpace;
 use crate::technique::compatibility::refuse;
-use crate::technique::{Error, Filter, Lattice, Mode, Settings, SkipBy, Technique};
 
 const SINGLE: &str = "single scattering";
 

@@ -9,10 +9,6 @@
 //!
 //! [`PathTracing`]: super::pathtrace::PathTracing
 
-#[doc(hidden)]
-pub mod reference;
-mod rules;
-
 use super::{Error, Settings, View};
 use crate::shaders::FrameFields;
 
