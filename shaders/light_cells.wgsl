@@ -4,8 +4,9 @@
 //
 //     A = k mean of (1 - T_i)        sigma = -ln(1 - min(A, 1 - 2^-12)) / L
 //
-// So a cell half full of something opaque is half transparent, and uniform matter keeps its extinction. What has no
-// data absorbs nothing. Bricks add their looks one after the other. CPU reference: src/technique/light_field.rs.
+// So a cell half full of something opaque is half transparent, and uniform matter keeps its extinction. Where light is
+// asked for inside of matter, sigma is k times the mean of sigma_i: optical depths then grow as evenly as matter does. What
+// has no data absorbs nothing. Bricks add their looks one after the other. CPU reference: src/technique/light_field.rs.
 
 #import light_grid
 #import brick
@@ -23,29 +24,42 @@ fn main(@builtin(global_invocation_id) cell: vec3<u32>) {
     }
     let low = vec3<f32>(cell) * light_grid.cell_voxels;
     let apart = light_grid.cell_voxels / vec3<f32>(light_grid.looks);
-    var opacity = 0.0;
+    var amount = 0.0;
     for (var z = 0u; z < light_grid.looks.z; z++) {
         for (var y = 0u; y < light_grid.looks.y; y++) {
             for (var x = 0u; x < light_grid.looks.x; x++) {
-                opacity += opacity_of(low + (vec3(f32(x), f32(y), f32(z)) + 0.5) * apart);
+                amount += amount_of(low + (vec3(f32(x), f32(y), f32(z)) + 0.5) * apart);
             }
         }
     }
     let looks = f32(light_grid.looks.x * light_grid.looks.y * light_grid.looks.z);
-    opacity *= kept_share(low) / looks;
+    amount *= kept_share(low) / looks;
     let index = cell_index(cell);
     if frame.is_first_brick == 0u {
-        opacity += opacity_over(light_cells.d[index], light_grid.cell_length);
+        amount += amount_in(light_cells.d[index]);
     }
-    light_cells.d[index] = extinction_of(opacity, light_grid.cell_length);
+    light_cells.d[index] = select(
+        extinction_of(amount, light_grid.cell_length),
+        amount,
+        light_grid.adds_extinctions != 0u,
+    );
 }
 
-// Of matter like that at a position, over a cell; 0 in another brick.
-fn opacity_of(voxel: vec3<f32>) -> f32 {
+// Of matter like that at a position; 0 in another brick.
+fn amount_of(voxel: vec3<f32>) -> f32 {
     if !is_in_brick(voxel) {
         return 0.0;
     }
-    return opacity_over(extinction_at(place_at(voxel)), light_grid.cell_length);
+    return amount_in(extinction_at(place_at(voxel)));
+}
+
+// What is added up: opacity over a cell, or extinction itself.
+fn amount_in(extinction: f32) -> f32 {
+    return select(
+        opacity_over(extinction, light_grid.cell_length),
+        extinction,
+        light_grid.adds_extinctions != 0u,
+    );
 }
 
 // Exact for the crop, and for a plane that one axis of the cell stands across.

@@ -145,6 +145,8 @@ const SLAB_LATTICE: Slot = constant("lattice", &["ray", "planes"]);
 const ONE: Slot = slot("inputs", &["scalar", "scalar_gradient"]);
 /// With a gradient for no more than unhindered light and weights of opacity, by central differences.
 const LEAN: Slot = slot("inputs", &["shaded", "gradient_opacity"]);
+/// Light that is scattered once.
+const SCATTERED: Slot = slot("inputs", &["scattered"]);
 const SCALAR: Slot = slot("inputs", &["scalar"]);
 /// Steps that adapt to what is there, of volumes without holes.
 const ADAPTIVE: Slot = slot("inputs", &["adaptive"]);
@@ -196,6 +198,19 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         // With layers in any case: on llvmpipe a lit picture alone was found to take 2 % longer.
         &[
             LINE, MODE, LEAN, RAY, CORNERS, HOLES, STORED, SHARED, SPACE, CUTS,
+        ],
+    ),
+    (
+        "raycast",
+        &[
+            LINE,
+            MODE,
+            SCATTERED,
+            SLAB_LATTICE,
+            NARROW,
+            HOLES,
+            TRANSFER,
+            LAYERS,
         ],
     ),
     (

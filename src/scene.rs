@@ -179,6 +179,7 @@ impl<'a> Scene<'a> {
         let is_one =
             self.mix() == SampleInputs::Scalar && !matches!(self.beside, Beside::Points(_));
         self.settings.check_path_volume(is_one, 1)?;
+        self.settings.check_scattering_volume(is_one, 1)?;
         if self.uses_gradient() {
             self.settings.check_graded()?;
         }
@@ -266,11 +267,10 @@ impl<'a> Scene<'a> {
             .map_or_else(|| self.default_length(), |f| self.length_of(f))
     }
 
-    /// World length that the opacities of `function` are for.
+    /// World length that the opacities of `function` are for: so much less of denser matter that scatters light once.
     pub fn length_of(&self, function: &TransferFunction) -> f64 {
-        function
-            .reference_length
-            .unwrap_or_else(|| self.default_length())
+        let own = function.reference_length;
+        own.unwrap_or_else(|| self.default_length()) / self.settings.density_of_rays()
     }
 
     /// Tells the parameters what paths want to know of the volume and its function.

@@ -261,6 +261,8 @@ struct Frame {
     // Bin (value - first) * scale; row r holds at i the largest of the bins i to i + 2^r - 1, times density.
     path_bin_first: f32,
     path_bin_scale: f32,
+    // Optical depth behind which light is not followed any more that samples follow to lights; 0: they follow none.
+    scattering_depth: f32,
     path_majorants: array<vec4<f32>, MAJORANT_VECTORS>,
 }
 

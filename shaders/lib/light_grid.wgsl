@@ -11,6 +11,8 @@ struct LightGrid {
     cell_length: f32,
     // How many times a cell is looked at along each axis.
     looks: vec3<u32>,
+    // Not 0: a cell has the mean of the extinctions that are found there, and not that of opacities.
+    adds_extinctions: u32,
 }
 
 struct LightNumbers {

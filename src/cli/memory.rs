@@ -193,7 +193,7 @@ pub fn fitting(
     let input = &scene.input;
     let filters = filters_of(scene);
     let host_bytes = input.max_memory.or_else(available_bytes);
-    let light = LightPlan::bytes(source.header().dims, scene.light.bundle_count());
+    let light = LightPlan::bytes(source.header().dims, scene.bundle_count());
     let (host_left, device_left) = beside_light(light, host_bytes, device);
     let factor = least_factor(source.header(), held, &filters, host_left, device_left);
     if factor == 1 {
@@ -223,7 +223,7 @@ pub fn is_too_large(
     held: Held,
 ) -> bool {
     let host_bytes = scene.input.max_memory.or_else(available_bytes);
-    let light = LightPlan::bytes(header.dims, scene.light.bundle_count());
+    let light = LightPlan::bytes(header.dims, scene.bundle_count());
     let (host_left, device_left) = beside_light(light, host_bytes, device);
     least_factor(header, held, &filters_of(scene), host_left, device_left) > 1
 }

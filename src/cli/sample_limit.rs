@@ -8,6 +8,15 @@ pub fn hint(error: &Error) -> Cow<'static, str> {
     match error {
         Error::LoopsEnd {
             samples_per_voxel: Some(most),
+            follows_light: true,
+            ..
+        } => format!(
+            "--shadows volume follows light once; --samples-per-voxel {} stays below it",
+            rounded_down(*most)
+        )
+        .into(),
+        Error::LoopsEnd {
+            samples_per_voxel: Some(most),
             ..
         } if *most > 0.0 => format!(
             "--samples-per-voxel {} stays below it; --technique slices-3d has no such loops, without layers of depth",
@@ -34,13 +43,15 @@ mod tests {
 
     #[test]
     fn the_samples_of_a_hint_stay_below_the_limit() {
-        let hint = |samples_per_voxel| {
+        let of_light = |samples_per_voxel, follows_light| {
             hint(&Error::LoopsEnd {
                 wanted: 13310.0,
                 limit: 4535.0,
                 samples_per_voxel,
+                follows_light,
             })
         };
+        let hint = |samples_per_voxel| of_light(samples_per_voxel, false);
         for (most, said) in [
             (0.3407, "--samples-per-voxel 0.34 stays"),
             (0.0299, "--samples-per-voxel 0.029 stays"),
@@ -54,5 +65,6 @@ mod tests {
             );
         }
         assert!(!hint(None).contains("--samples-per-voxel"));
+        assert!(of_light(Some(0.3), true).contains("--shadows volume"));
     }
 }

@@ -111,6 +111,11 @@ impl RendererDesc {
                 "draw its picture by `offscreen::Renderer`",
             ),
             (
+                settings.single_scattering.is_some(),
+                "single scattering",
+                "draw its picture by `offscreen::Renderer`",
+            ),
+            (
                 settings.wants_light_volume(),
                 "a picture with a light volume (shadows, ambient occlusion)",
                 "take `technique::LightVolume` and record it",

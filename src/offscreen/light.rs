@@ -28,6 +28,7 @@ pub struct Matter {
     gradient_filter: GradientFilter,
     crop: Option<[DVec3; 2]>,
     clip_planes: Vec<ClipPlane>,
+    density: f64,
 }
 
 impl Matter {
@@ -42,6 +43,7 @@ impl Matter {
             gradient_filter: settings.gradient_filter,
             crop: settings.crop,
             clip_planes: settings.clip_planes.clone(),
+            density: settings.density_of_rays(),
         }
     }
 }

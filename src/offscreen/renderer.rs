@@ -110,6 +110,7 @@ struct Classifying {
     functions: Vec<TransferFunction>,
     space: ColorSpace,
     is_preintegrated: bool,
+    density: f64,
 }
 
 impl<'v> Renderer<'v> {

@@ -14,6 +14,7 @@ impl Settings {
     pub fn check_ways(&self) -> Result<(), Error> {
         self.check_splats()?;
         self.check_paths()?;
+        self.check_scattering()?;
         let (mode, technique) = (self.mode, self.technique);
         let desc = technique.desc();
         let of_mode = |is_on: bool, wanted| {

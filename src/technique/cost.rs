@@ -1,6 +1,6 @@
 //! What work will take, guessed before anything like it was measured: rather too much than too little.
 
-use super::{MAX_SAMPLES_PER_RAY, Mode, Settings, View};
+use super::{MAX_SAMPLES_PER_RAY, Mode, SingleScattering, View};
 use crate::gpu::{Gpu, TARGET_MS};
 use crate::resident::Cell;
 use glam::DVec3;
@@ -68,7 +68,7 @@ fn fetches_of_pixels(view: &View, slices: u32) -> impl Iterator<Item = f64> {
             false if length > 0.0 => slices.into(),
             false => 0.0,
         };
-        samples * fetches_of_sample(settings)
+        samples * fetches_of_sample(view)
     })
 }
 
@@ -93,7 +93,27 @@ const FETCHES_OF_SHEET: f64 = 60.0;
 /// Of a path, for each voxel that its ray would meet: it goes there and back some times.
 const FETCHES_OF_PATH: f64 = 4.0;
 
-fn fetches_of_sample(settings: &Settings) -> f64 {
+/// Of a light whose light volume is asked: eight numbers of a buffer.
+const FETCHES_OF_LIGHT: f64 = 2.0;
+
+/// Parts of the longest ray that light is followed along from a sample to a light.
+const PART_OF_LIGHT_RAY: f64 = 0.5;
+
+fn fetches_of_scattering(view: &View, scattering: SingleScattering) -> f64 {
+    let lights = view.settings.path.lights.len() as f64;
+    1.0 + lights
+        * match scattering {
+            SingleScattering::Open => 0.0,
+            SingleScattering::Volume => FETCHES_OF_LIGHT,
+            SingleScattering::March => PART_OF_LIGHT_RAY * view.longest_sample_count(),
+        }
+}
+
+fn fetches_of_sample(view: &View) -> f64 {
+    let settings = view.settings;
+    if let Some(scattering) = settings.single_scattering {
+        return fetches_of_scattering(view, scattering);
+    }
     if settings.technique.traces_paths() {
         return FETCHES_OF_PATH * f64::from(settings.path.samples);
     }

@@ -26,6 +26,8 @@ pub enum Error {
         limit: f64,
         /// The samples per voxel that give so many; `None` where samples lie on slices, whose number is that of voxels.
         samples_per_voxel: Option<f64>,
+        /// Whether most of the turns are those of light that is followed from each sample.
+        follows_light: bool,
     },
     /// Compositing classifies every sample.
     #[error("compositing needs a transfer function")]

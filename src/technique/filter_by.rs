@@ -28,7 +28,7 @@ impl Settings {
     pub fn reads_footprint_texels(&self, mix: SampleInputs) -> bool {
         let is_slab =
             self.preintegrated && (!self.technique.casts_rays() || self.has_general_light());
-        let is_free = !self.conformance && !is_slab;
+        let is_free = !self.conformance && !is_slab && self.single_scattering.is_none();
         // Splats read voxels one by one, from the texture itself.
         let is_splatted = self.technique.splats();
         let has_such = !self.technique.draws_stacks() && !self.is_half_angle() && !is_splatted;

@@ -206,6 +206,9 @@ impl View<'_> {
         if self.settings.technique.traces_paths() {
             self.set_paths(&mut fields)?;
         }
+        if let Some(scattering) = self.settings.single_scattering {
+            self.set_scattering(scattering, &mut fields)?;
+        }
         Ok(fields)
     }
 

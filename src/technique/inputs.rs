@@ -168,6 +168,8 @@ pub struct ShaderVariant {
     pub is_lit: bool,
     /// Whether matter is in the way of light that falls on volumes that are mixed.
     pub is_hindered: bool,
+    /// Whether matter scatters light once.
+    pub is_scattered: bool,
     /// Rays leave what lies beside the picture: depth, value, samples, and what bricks behind go on with.
     pub writes_layers: bool,
 }
@@ -230,6 +232,7 @@ impl ShaderVariant {
         let corners = footprint_texels_of(parts).filter(|_| settings.reads_footprint_texels(mix));
         Self {
             mix: match mix {
+                SampleInputs::Scalar if settings.single_scattering.is_some() => mix,
                 SampleInputs::Scalar if is_lit && is_point && is_general => {
                     SampleInputs::ScalarGradient
                 }
@@ -270,6 +273,7 @@ impl ShaderVariant {
             is_hindered: !mix.is_of_one()
                 && settings.wants_light_volume()
                 && settings.mode == Mode::Composite,
+            is_scattered: settings.single_scattering.is_some(),
             writes_layers: true,
         }
     }

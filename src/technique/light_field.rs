@@ -2,8 +2,10 @@
 //!
 //! ```text
 //! A = k mean of (1 - exp(-sigma_i L))     sigma = -ln(1 - min(A, 1 - 2^-12)) / L        of a cell
+//! sigma = k mean of sigma_i                                                              of one where light is scattered
 //! open = sum over r of w_r exp(-sum of sigma d)                                          at a node, of a bundle
 //! ambient light at p = 1 - s (1 - open(p + d v))     light i: open(p + d l_i)            trilinear between nodes
+//! light that is scattered at p: open(p), ln open trilinear between nodes
 //! ```
 
 use super::LightPlan;
@@ -14,6 +16,8 @@ use crate::transfer::{extinction, opacity_over};
 
 /// Nothing that counts comes through more.
 const DARK: f64 = 12.0;
+/// ln 2^-24: where light is scattered nothing is darker.
+const DARKEST: f64 = -16.635_532;
 
 /// What comes through to each node, bundle after bundle.
 #[derive(Clone, Debug)]
@@ -80,13 +84,24 @@ impl<R: Real> LightField<R> {
         self.through_at(frame, bundle, voxel, vector([x, y, z]))
     }
 
+    /// Part of the light of a bundle at a position inside of matter: between nodes optical depths are interpolated. CPU
+    /// reference of `light_depth.wgsl`.
+    pub(super) fn scattered_at(&self, frame: &Frame, bundle: u32, voxel: [R; 3]) -> R {
+        let depth_of = |open: R| open.max(R::from_f32(1e-30)).ln().max(R::from_f64(DARKEST));
+        self.between_nodes(frame, bundle, voxel, depth_of).exp()
+    }
+
     /// A cell nearer to where light comes from.
     fn through_at(&self, frame: &Frame, bundle: u32, voxel: [R; 3], towards: [R; 3]) -> R {
         let way = scale(towards, R::from_f32(frame.light_reach));
         let step = frame
             .voxel_from_world
             .map(|[x, y, z, _]| dot(vector([x, y, z]), way));
-        let voxel = add(voxel, step);
+        self.between_nodes(frame, bundle, add(voxel, step), |open| open)
+    }
+
+    /// What `of` makes of what comes through to nodes, trilinear between them.
+    fn between_nodes(&self, frame: &Frame, bundle: u32, voxel: [R; 3], of: impl Fn(R) -> R) -> R {
         let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));
         let cells = vector::<R>(frame.light_cells);
         let per_voxel = vector::<R>(frame.light_cells_per_voxel);
@@ -101,7 +116,7 @@ impl<R: Real> LightField<R> {
             let weight = |k: usize| if bit(k) == 1 { part[k] } else { one - part[k] };
             let [x, y, z] = std::array::from_fn(|k| low[k] + bit(k));
             let index = x + nodes[0] * (y + nodes[1] * (z + nodes[2] * bundle as usize));
-            open = open + weight(0) * weight(1) * weight(2) * self.open[index];
+            open = open + weight(0) * weight(1) * weight(2) * of(self.open[index]);
         }
         open
     }
@@ -120,17 +135,24 @@ fn cell<R: Real>(
     let n = |x: u32| R::from_f64(x.into());
     let low: [R; 3] = std::array::from_fn(|k| n(cell[k]) * size[k]);
     let [lx, ly, lz] = plan.looks;
-    let mut opacity = R::from_f64(0.0);
+    let amount_in = |extinction: R| match plan.adds_extinctions {
+        true => extinction,
+        false => opacity_over(extinction, length),
+    };
+    let mut amount = R::from_f64(0.0);
     for look in (0..lz).flat_map(|z| (0..ly).flat_map(move |y| (0..lx).map(move |x| [x, y, z]))) {
         let place = std::array::from_fn(|k| {
             low[k] + (n(look[k]) + R::from_f64(0.5)) * (size[k] / n(plan.looks[k]))
         });
         if let Some(extinction) = extinction_at(place) {
-            opacity = opacity + opacity_over(extinction, length);
+            amount = amount + amount_in(extinction);
         }
     }
-    let opacity = opacity * (kept_share(frame, low, size) / n(lx * ly * lz));
-    extinction(opacity, length)
+    let amount = amount * (kept_share(frame, low, size) / n(lx * ly * lz));
+    match plan.adds_extinctions {
+        true => amount,
+        false => extinction(amount, length),
+    }
 }
 
 /// The part of a cell that no crop and no clip plane cuts away.

@@ -3,6 +3,7 @@
 //! ```text
 //! cells of an axis   min(voxels, 128), all of one size: none is smaller than a voxel
 //! looks at a cell    ceil(voxels of the cell) along each axis, at most 4; of several grids those of the finest
+//! sky                32 paths all around, from the node to the end of the grid
 //! occlusion          32 paths all around, from one cell to the radius
 //! shadow             8 paths over the disc of the light, from the node to the end of the grid
 //! ```
@@ -12,7 +13,7 @@
 //! Extinction volumes for this: Schlegel, Makhinya and Pajarola, IEEE TVCG 17(12), 2011.
 
 use super::light_paths::{all_around, path, towards};
-use super::{Error, Mode, View};
+use super::{Error, Light, Mode, SingleScattering, View};
 use crate::shaders::{FrameFields, LightGrid, LightGridFields};
 use crate::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
 use crate::volume::Grid;
@@ -65,6 +66,9 @@ pub struct LightPlan {
     pub cell_length: f64,
     /// Looks at a cell along each axis.
     pub looks: [u32; 3],
+    /// A cell has the mean of the extinctions that are found there, and not that of opacities: where light is asked for inside
+    /// of matter.
+    pub adds_extinctions: bool,
     /// How many bundles of paths there are: that of occlusion first, then one a light.
     pub bundle_count: u32,
     /// As `shaders/light_volume.wgsl` reads them.
@@ -88,6 +92,7 @@ impl LightPlan {
                 .reduce(f64::min)
                 .unwrap_or_else(|| view.grid.smallest_spacing()),
             looks: cell_voxels.map(|n| (n.ceil() as u32).clamp(1, MAX_LOOKS)),
+            adds_extinctions: view.settings.single_scattering.is_some(),
             bundle_count: 0,
             paths: Vec::new(),
         }
@@ -133,6 +138,7 @@ impl LightPlan {
             cell_voxels: self.cell_voxels.map(|n| n as f32),
             cell_length: self.cell_length as f32,
             looks: self.looks,
+            adds_extinctions: self.adds_extinctions.into(),
         }
         .into()
     }
@@ -151,16 +157,13 @@ impl View<'_> {
             let start = plan.cell_length.min(0.5 * radius);
             bundles.push((all_around(), [start, radius]));
         }
-        if let Some(light_size_degrees) = self.settings.shadow_size() {
-            for light in &self
-                .settings
-                .shading
-                .iter()
-                .flat_map(|s| &s.lights)
-                .collect::<Vec<_>>()
-            {
+        if self.settings.has_hindered_sky() {
+            bundles.push((all_around(), [0.0, f64::INFINITY]));
+        }
+        if let Some((lights, size_degrees)) = self.settings.shadow_lights() {
+            for light in lights {
                 let way = light.way(&self.camera.frame())?;
-                bundles.push((towards(way, light_size_degrees), [0.0, f64::INFINITY]));
+                bundles.push((towards(way, size_degrees), [0.0, f64::INFINITY]));
             }
         }
         if bundles.is_empty() {
@@ -211,12 +214,16 @@ impl View<'_> {
         let plan = LightPlan::grid_of(self);
         fields.light_cells = plan.cells.map(|n| n as f32);
         fields.light_cells_per_voxel = plan.cell_voxels.map(|n| (1.0 / n) as f32);
+        let settings = self.settings;
         // A surface fills the cell that it lies in.
         fields.light_reach = plan.cell_length as f32;
-        let occlusion = self.settings.occlusion();
-        fields.occlusion_strength = occlusion.map_or(0.0, |o| o.strength as f32);
-        fields.has_shadows = self.settings.shadow_size().is_some().into();
-        fields.shadow_bundle = occlusion.is_some().into();
+        let occlusion = settings.occlusion();
+        fields.occlusion_strength = match settings.has_hindered_sky() {
+            true => 1.0,
+            false => occlusion.map_or(0.0, |o| o.strength as f32),
+        };
+        fields.has_shadows = settings.shadow_lights().is_some().into();
+        fields.shadow_bundle = (fields.occlusion_strength != 0.0).into();
     }
 
     /// What is in the way of light in mode [`Mode::Iso`]: beyond each surface matter as opaque as it over the smallest
@@ -280,16 +287,22 @@ impl super::Settings {
 
     /// True where light is followed through the volume.
     pub fn wants_light_volume(&self) -> bool {
-        self.occlusion().is_some() || self.shadow_size().is_some()
+        let has_sky = self.occlusion().is_some() || self.has_hindered_sky();
+        has_sky || self.shadow_lights().is_some()
     }
 
-    /// How wide lights look whose shadows are followed through a volume. None where the light is a headlight, which
-    /// shines on all that is seen.
-    fn shadow_size(&self) -> Option<f64> {
+    /// The lights whose shadows are followed through a volume, and how wide they look. None where the light is a
+    /// headlight, which shines on all that is seen.
+    fn shadow_lights(&self) -> Option<(&[Light], f64)> {
+        if let Some(scattering) = self.single_scattering {
+            let path = &self.path;
+            let is_there = scattering == SingleScattering::Volume && !path.lights.is_empty();
+            return is_there.then_some((&path.lights, path.light_size_degrees));
+        }
         let shading = self.shading.as_ref()?;
         match shading.shadows {
             Shadows::Volume { light_size_degrees } if !shading.lights.is_empty() => {
-                Some(light_size_degrees)
+                Some((&shading.lights, light_size_degrees))
             }
             _ => None,
         }
@@ -308,7 +321,7 @@ impl super::Settings {
             "0 to 1",
             strength,
         )?;
-        let size = self.shadow_size().unwrap_or(0.0);
+        let size = self.shadow_lights().map_or(0.0, |(_, size)| size);
         let is_angle = (0.0..=90.0).contains(&size);
         Error::unless(is_angle, "the size of lights", "0 to 90 degrees", size)
     }
@@ -341,6 +354,7 @@ mod tests {
                 cell_voxels: [1.0; 3],
                 cell_length: 1.0,
                 looks: [1; 3],
+                adds_extinctions: false,
                 bundle_count: 0,
                 paths: Vec::new(),
             };

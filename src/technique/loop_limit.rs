@@ -11,7 +11,11 @@
 //! search for the halvings of the points, light for lamps and for the corners of a cell of the light volume. Clip
 //! planes are gone over once a ray, and once more for cut faces.
 
-use super::{Error, Filter, GradientStorage, Operator, SampleKind, Settings, ShaderVariant, View};
+use super::{
+    Error, Filter, GradientStorage, Operator, SampleKind, Settings, ShaderVariant,
+    SingleScattering, View,
+};
+use glam::DVec3;
 
 /// Of what is rare: surfaces that are refined, the first turns of everything.
 const SPARE: f64 = 2048.0;
@@ -91,12 +95,52 @@ pub fn turns_per_sample(
     let of_each = if volumes > 1 { 3 } else { 0 };
     let of_numbers = fetches * (1 + mask + filter) + weights;
     let of_labels = 1 + mask + if has_gradient { 14 } else { 0 };
+    if settings.single_scattering.is_some() {
+        // In the light volume each light, and the sky, has the corners of a cell.
+        let of_light = 10 * (1 + settings.path.lights.len() as u64);
+        return 4 + 2 * (of_numbers + search) + of_light;
+    }
     let [labels, volumes] = [functions.labels, volumes].map(|n| n as u64);
     let numbers = volumes.saturating_sub(labels);
     3 + volumes * (of_each + search + light) + numbers * of_numbers + labels * of_labels
 }
 
 impl View<'_> {
+    /// How often the loops of one sample go round that follow light to where the domain ends:
+    ///
+    /// ```text
+    /// sum over lights of  2 (n / 4 + 1) + 3 n / 8 + 3 + n (mask + search)        n steps
+    /// ```
+    ///
+    /// four steps a turn, each after a search for the next one that counts, which goes round for macro cells.
+    fn turns_of_light(&self, variant: &ShaderVariant, functions: Functions) -> f64 {
+        if self.settings.single_scattering != Some(SingleScattering::March) {
+            return 0.0;
+        }
+        let mask = if variant.holes == "mask" { 10.0 } else { 0.0 };
+        let search = match variant.transfer {
+            "points" => 2.0 * f64::from((functions.points + 1).ilog2() + 2),
+            _ => 0.0,
+        };
+        let camera = self.camera.frame();
+        let clip = self.settings.clip_planes.len() as f64;
+        let lights = self.settings.path.lights.iter();
+        let turns = lights.map(|light| {
+            let way = light.way(&camera).unwrap_or(DVec3::ZERO);
+            let steps = self.longest_way(way) / self.step_world() + 1.0;
+            steps * (7.0 / 8.0 + mask + search) + 6.0 + clip
+        });
+        turns.sum()
+    }
+
+    /// World length of the longest straight line of this direction in the box of the grid.
+    fn longest_way(&self, way: DVec3) -> f64 {
+        let slopes = self.grid.voxel_rows().map(|row| row.dot(way).abs());
+        let far = self.grid.far_corner();
+        let lengths = (0..3).map(|k| far[k] / slopes[k].max(1e-20));
+        lengths.fold(f64::INFINITY, f64::min)
+    }
+
     /// Whether the loops of the longest ray end where they should on a device that counts their turns.
     ///
     /// # Errors
@@ -145,19 +189,25 @@ impl View<'_> {
         if max_loop_turns == u32::MAX {
             return Ok(());
         }
-        let turns = turns_per_sample(self.settings, variant, volumes, functions);
+        let turns = turns_per_sample(self.settings, variant, volumes, functions) as f64;
+        let of_light = self.turns_of_light(variant, functions);
         let clip = 2.0 * self.settings.clip_planes.len() as f64;
-        let limit = (f64::from(max_loop_turns) - SPARE - clip).max(0.0) / turns as f64;
+        let limit = (f64::from(max_loop_turns) - SPARE - clip).max(0.0) / (turns + of_light);
         if wanted <= limit {
             return Ok(());
         }
         let is_by_voxels = self.settings.technique.draws_stacks();
-        let samples_per_voxel =
-            (!is_by_voxels).then(|| self.settings.samples_per_voxel * limit / wanted);
+        // Steps of rays and of light are longer together.
+        let part = match of_light > 0.0 {
+            true => (limit / wanted).sqrt(),
+            false => limit / wanted,
+        };
+        let samples_per_voxel = (!is_by_voxels).then(|| self.settings.samples_per_voxel * part);
         Err(Error::LoopsEnd {
             wanted,
             limit,
             samples_per_voxel,
+            follows_light: of_light > turns,
         })
     }
 }

@@ -60,6 +60,9 @@ mod recording;
 #[doc(hidden)]
 pub mod reference;
 mod registry;
+mod scattered_light;
+mod scattering;
+mod scattering_rules;
 #[doc(hidden)]
 pub mod second_derivative;
 #[doc(hidden)]
@@ -96,6 +99,8 @@ pub use patches::{BATCH_SLICES, PatchRoom, Patches};
 pub use per_mode::{DEFAULT_ATTENUATION, Level, PerMode};
 pub use ray_tiles::{RayBindings, RayTiles};
 pub use recording::{Recording, parameter_ring};
+pub(crate) use scattered_light::scattered;
+pub use scattering::SingleScattering;
 pub use shading::{Light, LightSpace, Shading};
 pub use shear_warp::Intermediate;
 pub use skip::{Skip, SkipBy, Skippable};
@@ -293,8 +298,11 @@ pub struct Settings {
     pub dim: f64,
     /// What splats are.
     pub splat: splat::Splat,
-    /// What paths are.
+    /// What paths are, and the medium, the lights and the sky of [`Self::single_scattering`].
     pub path: pathtrace::PathTracing,
+    /// Composite by rays: matter scatters light once on its way to the eye, and does not shine in its colours, which are
+    /// albedos.
+    pub single_scattering: Option<SingleScattering>,
 }
 
 /// Faint, and still seen.
@@ -347,6 +355,7 @@ impl Default for Settings {
             dim: DEFAULT_DIM,
             splat: splat::Splat::default(),
             path: pathtrace::PathTracing::default(),
+            single_scattering: None,
         }
     }
 }

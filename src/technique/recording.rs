@@ -124,6 +124,7 @@ impl View<'_> {
         self.check_slabs(bricks.len())?;
         self.settings.check_bricks(bricks.len())?;
         self.settings.check_path_volume(true, bricks.len())?;
+        self.settings.check_scattering_volume(true, bricks.len())?;
         if self.settings.is_half_angle() {
             if parts.len() > 1 {
                 return Err(Error::NotShadedTogether.into());
@@ -174,6 +175,7 @@ impl View<'_> {
     ) -> Result<Recording, Error> {
         self.check_slabs(2)?;
         self.settings.check_bricks(2)?;
+        self.settings.check_scattering_volume(true, 2)?;
         let mut fields = self.fields_of(volume, &[GpuChannel::numbers(volume)], transfer)?;
         let cell = &volume.bricks()[0].cell;
         self.set_brick(cell, is_first, &mut fields);

@@ -310,8 +310,8 @@ fn every_command_of_the_page_of_weather_runs() {
 #[test]
 fn every_command_of_the_page_of_path_tracing_runs() {
     let (folder, _, lines) = run_page("docs/pathtrace.md");
-    assert_eq!(lines, 4);
-    for name in ["head.png", "lit.png", "once.png", "near.png"] {
+    assert_eq!(lines, 5);
+    for name in ["head.png", "lit.png", "once.png", "near.png", "single.png"] {
         assert!(folder.path(name).exists(), "{name}");
     }
 }

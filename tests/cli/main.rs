@@ -63,6 +63,7 @@ mod points;
 mod presets;
 mod real;
 mod sampled;
+mod scattering;
 mod section;
 mod section_at;
 mod sheet;

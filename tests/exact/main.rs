@@ -35,6 +35,7 @@ mod occlusion;
 mod pathtrace;
 mod quality;
 mod references;
+mod scattering;
 mod shapes;
 mod shear_warp;
 mod slabs;

@@ -28,9 +28,9 @@ fn modules_are_few_and_small() {
         probes.len(),
         SHADERS.len()
     );
-    // 106, three of shear-warp, six of splats, two of slabs by footprint texels, three of paths, and two of light through
-    // several volumes.
-    assert!((50..=122).contains(&drawing.len()), "{}", drawing.len());
+    // 106, three of shear-warp, six of splats, two of slabs by footprint texels, three of paths, two of light through
+    // several volumes, and one of light that is scattered once.
+    assert!((50..=123).contains(&drawing.len()), "{}", drawing.len());
     assert!(probes.len() <= 70, "{}", probes.len());
     assert!(bytes <= 12_000_000, "{bytes}");
     let stored = concat!(env!("OUT_DIR"), "/shaders.deflate");

@@ -42,11 +42,12 @@ pub struct LightFlags {
     #[arg(long, value_name = "STRENGTH[,RADIUS]", allow_hyphen_values = true, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ambient_occlusion: Option<OcclusionWord>,
-    /// Whether matter on the way to a --light keeps it away; --material A is what stays in the shadow [default: off]
+    /// Whether matter on the way to a --light keeps it away; --material A is what stays in the shadow [default: off;
+    /// volume with --scattering single]
     #[arg(long, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shadows: Option<ShadowsWord>,
-    /// How wide lights look, in degrees: 0 for sharp shadows [default: 5; 0 with --technique pathtrace]
+    /// How wide lights look, in degrees: 0 for sharp shadows [default: 5; 0 with --technique pathtrace and --shadows march]
     #[arg(long, value_name = "DEGREES", value_parser = finite, allow_hyphen_values = true, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub light_size: Option<f64>,
@@ -239,6 +240,11 @@ impl LightFlags {
     }
 
     fn shadows(&self) -> Result<Shadows, Error> {
+        Ok(self.shadows.unwrap_or_default().shadows(self.size()?))
+    }
+
+    /// How wide lights look whose shadows are followed through a grid, in degrees.
+    pub(super) fn size(&self) -> Result<f64, Error> {
         let size = self.light_size.unwrap_or(DEFAULT_LIGHT_SIZE);
         if !(0.0..=MAX_LIGHT_SIZE).contains(&size) {
             return Err(Error::usage(
@@ -246,7 +252,7 @@ impl LightFlags {
                 "--light-size 0 makes shadows sharp, the sun is half a degree wide",
             ));
         }
-        Ok(self.shadows.unwrap_or_default().shadows(size))
+        Ok(size)
     }
 
     /// How many bundles of paths of light are followed for a picture.
@@ -254,7 +260,7 @@ impl LightFlags {
         let of_occlusion = u32::from(self.ambient_occlusion.is_some());
         match self.shadows.unwrap_or_default() {
             ShadowsWord::Volume => of_occlusion + self.light.len() as u32,
-            ShadowsWord::Off | ShadowsWord::HalfAngle => of_occlusion,
+            ShadowsWord::Off | ShadowsWord::March | ShadowsWord::HalfAngle => of_occlusion,
         }
     }
 

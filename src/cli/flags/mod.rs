@@ -34,6 +34,7 @@ mod point_grid;
 mod points;
 mod sampling;
 mod sampling_numbers;
+mod scattering;
 mod section;
 mod section_words;
 mod shadows;
@@ -70,6 +71,7 @@ pub use picture::{PictureFlags, ToneWord};
 pub use point_grid::{PointGrid, PointGridFlags};
 pub use points::PointLookFlags;
 pub use sampling::{Depth, SamplingFlags};
+pub use scattering::ScatteringWord;
 pub use section::SectionFlags;
 pub use subject::Subject;
 pub use values::{preset, with_causes};
@@ -187,6 +189,14 @@ impl SceneFlags {
         technique.is_some_and(|technique| technique.traces_paths())
     }
 
+    /// How many bundles of paths of light are followed for a picture.
+    pub fn bundle_count(&self) -> u32 {
+        match self.path.scatters_once() {
+            true => self.path.bundle_count(&self.light),
+            false => self.light.bundle_count(),
+        }
+    }
+
     /// True where nothing of the volume is seen.
     pub fn hides_volume(&self) -> bool {
         self.flow_style.hide_volume || self.points_are_spheres()
@@ -236,6 +246,7 @@ impl SceneFlags {
             path: self.path.path(&self.light, self.picture.shows_sky())?,
             ..settings
         };
+        let settings = self.path.scattered(&self.light, settings)?;
         sampling::check_ways(&settings)?;
         if !self.wants_slabs() {
             return Ok(settings);
@@ -272,6 +283,7 @@ impl SceneFlags {
         let mode = self.sampling.mode.unwrap_or_default();
         let of_light = match self.traces_paths() {
             true => Vec::new(),
+            false if self.path.scatters_once() => self.path.idle_of_rays(),
             false => [self.light.idle(mode), self.path.idle()].concat(),
         };
         let topics = [

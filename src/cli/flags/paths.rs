@@ -1,7 +1,7 @@
 //! Path tracing: flags to [`PathTracing`].
 
 use super::numbers::positive;
-use super::{EnvironmentWord, Error, LightFlags, Numbers, finite};
+use super::{EnvironmentWord, Error, LightFlags, Numbers, ScatteringWord, finite};
 use crate::technique::pathtrace::{Lens, PathTracing, Phase};
 use crate::technique::{Light, LightSpace};
 use clap::Args;
@@ -16,6 +16,11 @@ const HEADING: &str = "Path tracing";
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PathFlags {
+    /// Light that matter scatters once on its way to the eye, without noise, by --technique raycast: none, matter shines in
+    /// its colours, or single, by --light, --environment R,G,B, --phase, --albedo, --density-scale and --shadows [default: none]
+    #[arg(long, value_name = "none|single", help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scattering: Option<ScatteringWord>,
     /// Paths a pixel: noise halves with four times as many [default: 64]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_PATHS), help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -159,9 +164,32 @@ impl PathFlags {
         }
     }
 
+    /// Flags that change nothing where light is scattered once without paths.
+    pub fn idle_of_rays(&self) -> Vec<&'static str> {
+        let of_paths = Self {
+            scattering: None,
+            density_scale: None,
+            albedo: None,
+            phase: None,
+            environment: None,
+            environment_strength: None,
+            ..self.clone()
+        };
+        match of_paths == Self::default() {
+            true => Vec::new(),
+            false => vec![
+                "--spp, --noise, --seconds, --seed, --bounces, --environment-turn, --surface-scattering, --f0, --roughness, --aperture-radius, --focus-distance and --denoise-picture have no effect without --technique pathtrace",
+            ],
+        }
+    }
+
     /// Flags that change nothing where no paths are traced.
     pub fn idle(&self) -> Vec<&'static str> {
-        match *self == Self::default() {
+        let given = Self {
+            scattering: None,
+            ..self.clone()
+        };
+        match given == Self::default() {
             true => Vec::new(),
             false => vec![
                 "--spp, --noise, --seconds, --seed, --bounces, --density-scale, --albedo, --phase, --environment, --environment-strength, --environment-turn, --surface-scattering, --f0, --roughness, --aperture-radius, --focus-distance and --denoise-picture have no effect without --technique pathtrace",

@@ -7,6 +7,7 @@ use super::{
     intermediate::IntermediateWord,
     positive,
     sampling_numbers::{clip_planes, crop_box, rays_per_side, samples_per_voxel},
+    scattering::SINGLE,
     shadows::HALF_ANGLE,
 };
 use crate::{
@@ -191,6 +192,7 @@ pub fn check_ways(settings: &Settings) -> Result<(), Error> {
         _ if settings.technique.is_warped() => WARP,
         _ if settings.technique.splats() => SPLATS,
         _ if settings.technique.traces_paths() => PATHS,
+        _ if settings.single_scattering.is_some() => SINGLE,
         Lattice::Bresenham => MAIN_AXIS,
         _ => WAYS,
     };
@@ -241,6 +243,7 @@ impl SamplingFlags {
             dim: DEFAULT_DIM,
             splat: self.splat(depth),
             path: Default::default(),
+            single_scattering: None,
             ambient_occlusion: None,
             conformance: self.conformance,
             // Of the values, which are not known yet.

@@ -13,6 +13,10 @@ pub enum ShadowsWord {
     Off,
     #[value(help = "light is followed once through a coarse grid, for every technique")]
     Volume,
+    #[value(
+        help = "light is followed from each sample, by steps as long as those of rays, with --scattering single"
+    )]
+    March,
     #[value(help = "slices half way to one light, by --technique slices-3d in --mode composite")]
     HalfAngle,
 }
@@ -25,7 +29,8 @@ impl ShadowsWord {
     /// What it stands for, of lights that look so wide.
     pub fn shadows(self, light_size_degrees: f64) -> Shadows {
         match self {
-            Self::Off => Shadows::Off,
+            // Of light that is scattered, not shaded.
+            Self::Off | Self::March => Shadows::Off,
             Self::Volume => Shadows::Volume { light_size_degrees },
             Self::HalfAngle => Shadows::HalfAngle,
         }

@@ -30,7 +30,7 @@ pub fn leaves_room(
 ) -> bool {
     let filters = filters_of(scene);
     let one = RenderBytes::held(header, header.fill.is_some(), held, &filters);
-    let light = LightPlan::bytes(header.dims, scene.light.bundle_count());
+    let light = LightPlan::bytes(header.dims, scene.bundle_count());
     let on_host = one.host.saturating_mul(u64::from(devices) + 1);
     let on_device = one.device.saturating_add(light);
     let on_device = on_device.saturating_mul(devices.into());
@@ -50,7 +50,7 @@ pub fn needed_bytes(
     held: Held,
 ) -> u64 {
     let needed = RenderBytes::held(header, true, held, &filters_of(scene));
-    let light = LightPlan::bytes(header.dims, scene.light.bundle_count());
+    let light = LightPlan::bytes(header.dims, scene.bundle_count());
     match device.is_some_and(|device| device.is_of_host) {
         true => needed
             .host

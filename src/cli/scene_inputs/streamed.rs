@@ -33,6 +33,7 @@ pub fn is_wanted(
             Some("--technique slices-3d, slices-2d, shear-warp, splat and pathtrace")
         }
         () if settings.filter.spline().is_some() => Some("--filter quadratic and cubic"),
+        () if settings.single_scattering.is_some() => Some("--scattering single"),
         () if settings.wants_light_volume() => Some("--ambient-occlusion and --shadows"),
         () if header.is_labels => Some("labels in their own colours"),
         () if !source.reads_parts() => Some(AS_A_WHOLE),

@@ -1,7 +1,7 @@
 //! What the volumes of a scene are made of in one place: classified, by gradients where they count, and lit.
 
-use super::ReferenceRays;
 use super::mixture::SeenPlace;
+use super::{ReferenceRays, filtered};
 use crate::real::{Real, dot, scale};
 use crate::scene::Beside;
 use crate::shaders::Frame;
@@ -9,7 +9,7 @@ use crate::technique::gradient::gradient_of;
 use crate::technique::gradient_taps::weighted_gradient;
 use crate::technique::second_derivative::second_derivative_of;
 use crate::technique::shading::{Lamps, shade};
-use crate::technique::{Filter, Operator};
+use crate::technique::{Filter, Operator, scattered};
 use crate::transfer::{GradientMagnitude, PackedWidgets, classify_by_gradient};
 use crate::volume::Volume;
 
@@ -49,6 +49,9 @@ impl<R: Real> ReferenceRays<'_, R> {
         if let [volume] = self.volumes[..] {
             let value = look_from(volume, settings.filter, [0; 3])?;
             let material = self.classified(0, value);
+            if settings.single_scattering.is_some() {
+                return Some(self.scattered(material, p, ray_direction));
+            }
             let tap = |step| look_from(volume, settings.filter, step);
             let Some(widgets) = &self.widgets else {
                 let gradient = || self.gradient(p, tap);
@@ -60,6 +63,21 @@ impl<R: Real> ReferenceRays<'_, R> {
             return Some(self.lit_by(material, p, ray_direction, || gradient));
         }
         self.mixed_channels(look_from, place)
+    }
+
+    /// A material at `p` with the light that it scatters to the eye: none along no direction.
+    fn scattered(&self, material: [R; 4], p: [R; 3], ray_direction: [R; 3]) -> [R; 4] {
+        let [r, g, b, extinction] = material;
+        if ray_direction == [R::from_f64(0.0); 3] {
+            return material;
+        }
+        let extinction_at = |p| {
+            let value = filtered(self.volumes[0], self.scene.settings.filter, p);
+            value.map_or(R::from_f64(0.0), |value| self.classified(0, value)[3])
+        };
+        let lamps = self.lamps(p, ray_direction);
+        let [r, g, b] = scattered(&self.frame, [r, g, b], &lamps, extinction_at);
+        [r, g, b, extinction]
     }
 
     /// A material at `p` with the light that falls on it: none along no direction, and without lamps all of it ambient.

@@ -54,6 +54,7 @@ impl Renderer<'_> {
             functions: functions.iter().copied().cloned().collect(),
             space,
             is_preintegrated,
+            density: scene.settings.density_of_rays(),
         };
         let (device, changes) = (&mut self.device, &mut self.changes);
         self.transfer.of(key, |_| {

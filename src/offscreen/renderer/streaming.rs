@@ -68,6 +68,7 @@ impl<'v> Renderer<'v> {
             () if !settings.technique.streams() => "another technique than ray casting",
             () if scene.volumes().len() > 1 => "several volumes",
             () if settings.filter.spline().is_some() => "a filter that reads coefficients",
+            () if settings.single_scattering.is_some() => "single scattering",
             () if settings.wants_light_volume() => "occlusion or shadows",
             () if settings.adaptive_steps.is_some() => "adaptive steps",
             () if settings.empty_space != SkipBy::Cells => "empty space by an octree or by runs",

@@ -20,6 +20,7 @@ mod surface;
 
 pub(crate) use denoise::denoised;
 pub use phase::Phase;
+pub(crate) use phase::phase_value;
 pub use sky::{SkyError, SkyPicture};
 
 use super::gather::{Gather, GatherDesc, RayPass, rays_of};

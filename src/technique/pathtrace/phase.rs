@@ -45,6 +45,11 @@ impl Phase {
         [f, g1, g2, is_rayleigh].map(|n| n as f32)
     }
 
+    /// Whether it sends light to all sides alike.
+    pub(in crate::technique) fn is_even(self) -> bool {
+        self != Self::Rayleigh && self.parts().1 == [0.0; 2]
+    }
+
     /// The cosines and the part, which have ranges.
     pub(super) fn parts(self) -> (f64, [f64; 2]) {
         match self {

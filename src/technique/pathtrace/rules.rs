@@ -94,7 +94,7 @@ impl Settings {
 }
 
 impl PathTracing {
-    fn check(&self) -> Result<(), Error> {
+    pub(in crate::technique) fn check(&self) -> Result<(), Error> {
         let count = f64::from(self.samples);
         let wanted = "1 or more";
         Error::unless(self.samples > 0, "paths a pixel", wanted, count)?;

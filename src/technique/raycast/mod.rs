@@ -61,6 +61,7 @@ impl Raycast {
             take,
             is_adaptive,
             skip_by,
+            is_scattered,
             ..
         } = variant;
         // Kernels, planes and exact control points have the general variant alone.
@@ -87,6 +88,9 @@ impl Raycast {
             // Of one volume without light or holes: nothing else is checked to be right.
             SampleKind::Point if *is_adaptive && of == Mode::Composite => {
                 format!("raycast.composite.adaptive.{lattice}.{filter}.{holes}.{transfer}")
+            }
+            _ if *is_scattered => {
+                format!("raycast.{mode}.scattered.{lattice}.{filter}.{holes}.{transfer}")
             }
             _ => format!(
                 "raycast.{mode}{}.{lattice}.{filter}.{holes}.{transfer}{space}",

@@ -140,6 +140,7 @@ impl View<'_> {
                 wanted: slices,
                 limit: (room.max(0.0) * slices / most).floor(),
                 samples_per_voxel: None,
+                follows_light: false,
             }),
         }
     }

@@ -19,7 +19,7 @@ use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunct
 use stratavox::volume::{Rescale, Volume, Voxels};
 
 /// Matter of one albedo, with extinctions per world length at values.
-fn matter(albedo: [f64; 3], extinctions: &[(f64, f64)]) -> TransferFunction {
+pub fn matter(albedo: [f64; 3], extinctions: &[(f64, f64)]) -> TransferFunction {
     let opacity = |&(value, extinction): &(f64, f64)| OpacityPoint {
         value,
         opacity: -(-extinction).exp_m1(),
@@ -37,7 +37,7 @@ fn matter(albedo: [f64; 3], extinctions: &[(f64, f64)]) -> TransferFunction {
 }
 
 /// A layer one unit thick, so wide that nothing leaves by its sides.
-fn layer(value_at: impl Fn(f64) -> f64) -> Volume {
+pub fn layer(value_at: impl Fn(f64) -> f64) -> Volume {
     const THICK: u32 = 8;
     let scale = dvec3(1e4, 1e4, 1.0 / f64::from(THICK));
     let place = DAffine3::from_translation(dvec3(-1e4, -1e4, -1.0)) * DAffine3::from_scale(scale);
@@ -45,13 +45,13 @@ fn layer(value_at: impl Fn(f64) -> f64) -> Volume {
 }
 
 /// A direction at this cosine to the normal of the layer, at an angle around it.
-fn at(cosine: f64, turn: f64) -> DVec3 {
+pub fn at(cosine: f64, turn: f64) -> DVec3 {
     let sine = (1.0 - cosine * cosine).sqrt();
     dvec3(sine * turn.cos(), sine * turn.sin(), cosine)
 }
 
 /// From so far above the layer, parallel rays.
-fn eye(towards: DVec3) -> Camera {
+pub fn eye(towards: DVec3) -> Camera {
     Camera {
         eye: 3.0 * towards,
         target: DVec3::ZERO,
@@ -61,7 +61,7 @@ fn eye(towards: DVec3) -> Camera {
     }
 }
 
-fn light(towards: DVec3) -> Light {
+pub fn light(towards: DVec3) -> Light {
     Light {
         towards,
         space: LightSpace::World,
@@ -69,7 +69,7 @@ fn light(towards: DVec3) -> Light {
     }
 }
 
-fn settings(path: PathTracing) -> Settings {
+pub fn settings(path: PathTracing) -> Settings {
     Settings {
         technique: Technique::Pathtrace,
         path,
@@ -77,7 +77,7 @@ fn settings(path: PathTracing) -> Settings {
     }
 }
 
-fn scene<'a>(
+pub fn scene<'a>(
     volume: &'a Volume,
     function: &'a TransferFunction,
     camera: &'a Camera,
@@ -94,13 +94,13 @@ fn scene<'a>(
     }
 }
 
-fn drawn(scene: &Scene) -> Picture {
+pub fn drawn(scene: &Scene) -> Picture {
     let mut renderer = Renderer::new(device(), scene.volume).expect("a renderer");
     renderer.render(scene, &[]).expect("a picture").picture
 }
 
 /// Mean and standard error of a channel over the pixels of a picture.
-fn mean(picture: &Picture, channel: usize) -> [f64; 2] {
+pub fn mean(picture: &Picture, channel: usize) -> [f64; 2] {
     let n = picture.pixels.len() as f64;
     let numbers = || picture.pixels.iter().map(|p| f64::from(p[channel]));
     let mean = numbers().sum::<f64>() / n;
@@ -285,7 +285,7 @@ fn a_wide_light_is_the_mean_of_its_directions() {
 }
 
 /// Blobs in a box whose voxels are no cubes.
-fn blobs() -> Volume {
+pub fn blobs() -> Volume {
     let place = DAffine3::from_scale(dvec3(1.0, 0.8, 1.3));
     volume_of([40, 36, 28], place, |p| {
         ((0.2 * p.x).sin() + (0.25 * p.y + 1.0).sin() + (0.22 * p.z).cos()) / 3.0
@@ -312,7 +312,7 @@ fn of_codes(volume: &Volume, most: u16) -> Volume {
         .expect("a volume")
 }
 
-fn around_blobs() -> Camera {
+pub fn around_blobs() -> Camera {
     Camera {
         eye: dvec3(70.0, 50.0, 60.0),
         target: dvec3(20.0, 14.0, 18.0),
@@ -454,7 +454,7 @@ fn empty_space_changes_paths_and_no_mean() {
 }
 
 /// The mean of a picture whose pixels differ: the error by that of neighbours.
-fn mean_of(picture: &Picture, channel: usize) -> [f64; 2] {
+pub fn mean_of(picture: &Picture, channel: usize) -> [f64; 2] {
     let numbers: Vec<_> = picture
         .pixels
         .iter()
