@@ -202,7 +202,7 @@ impl View<'_> {
             true => (limit / wanted).sqrt(),
             false => limit / wanted,
         };
-        let samples_per_voxel = (!is_by_voxels).then(|| self.settings.samples_per_voxel * part);
+        let samples_per_voxel = (!is_by_voxels).then_some(self.settings.samples_per_voxel * part);
         Err(Error::LoopsEnd {
             wanted,
             limit,

@@ -74,7 +74,7 @@ impl Settings {
     pub(crate) fn check_scattering_volume(&self, is_one: bool, bricks: usize) -> Result<(), Error> {
         let is_there = self.single_scattering.is_some();
         let of = "one volume of numbers";
-        let found = "several, or colours, or gradients, for which there is path tracing";
+        let found = "several, or colours, or gradients";
         refuse(is_there && !is_one, SINGLE, of, found)?;
         let is_marched = self.single_scattering == Some(SingleScattering::March);
         let of = "a volume in one texture where light is followed from each sample";

@@ -230,6 +230,7 @@ impl SceneFlags {
                 "leave out --color-space",
             ));
         }
+        self.path.check_sky()?;
         let ends = self.path.noise.is_some() || self.path.seconds.is_some();
         if ends && self.device.iter().any(|device| device == REFERENCE) {
             return Err(Error::usage(

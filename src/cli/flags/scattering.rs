@@ -78,6 +78,17 @@ impl PathFlags {
         lights + u32::from(has_sky)
     }
 
+    /// Refuses a picture of the sky before it is read.
+    pub(super) fn check_sky(&self) -> Result<(), Error> {
+        match self.environment {
+            Some(EnvironmentWord::Picture(_)) if self.scatters_once() => Err(Error::usage(
+                "--scattering single: an environment picture is for --technique pathtrace",
+                "--environment R,G,B is an even sky",
+            )),
+            _ => Ok(()),
+        }
+    }
+
     /// The settings with single scattering, where it is asked for.
     pub(super) fn scattered(
         &self,
@@ -94,12 +105,6 @@ impl PathFlags {
                 }
                 _ => Ok(settings),
             };
-        }
-        if let Some(EnvironmentWord::Picture(_)) = self.environment {
-            return Err(Error::usage(
-                "--scattering single: an environment picture is for --technique pathtrace",
-                "--environment R,G,B is an even sky",
-            ));
         }
         if settings.technique == Technique::Pathtrace {
             return Err(Error::usage(

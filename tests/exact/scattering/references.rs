@@ -217,6 +217,8 @@ fn light_goes_through_bricks_as_through_one_piece() {
     drawn(&mut whole, &scene);
 }
 
+type Change<'a> = &'a dyn Fn(&mut Settings);
+
 #[test]
 fn what_has_no_light_to_scatter_is_refused_by_name() {
     let (volume, transfer) = (field(false), ramps());
@@ -241,7 +243,7 @@ fn what_has_no_light_to_scatter_is_refused_by_name() {
         }
         error
     };
-    let changes: [(&str, &dyn Fn(&mut Settings)); 17] = [
+    let changes: [(&str, Change); 17] = [
         ("ray casting", &|s| s.technique = Technique::Slices3d),
         ("composite", &|s| s.mode = Mode::Mip),
         ("composite", &|s| s.mode = Mode::Mida),
