@@ -145,6 +145,11 @@ pub const FILTERS: [(&str, Filter, bool); 7] = [
 pub const PROJECTIONS: [(&str, bool); 2] = [("orthographic", false), ("perspective", true)];
 
 impl Placement {
+    /// True where slabs end on samples of a pixel's own ray.
+    pub fn has_slabs(&self) -> bool {
+        self.lattice != Lattice::Bresenham && self.technique != Technique::ShearWarp
+    }
+
     /// True where the rasterizer blends.
     pub fn is_slicer(&self) -> bool {
         !self.technique.casts_rays()

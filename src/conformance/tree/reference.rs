@@ -101,13 +101,15 @@ pub fn cases() -> Vec<Case> {
             ("linear_fetch", Filter::Linear),
             Look::Lit,
         );
-        add(
-            placement,
-            "composite",
-            Mode::Composite,
-            ("linear_fetch", Filter::Linear),
-            Look::LitSlabs,
-        );
+        if placement.has_slabs() {
+            add(
+                placement,
+                "composite",
+                Mode::Composite,
+                ("linear_fetch", Filter::Linear),
+                Look::LitSlabs,
+            );
+        }
         add(
             placement,
             "composite",

@@ -39,8 +39,7 @@ pub fn cases() -> Vec<Case> {
         lattice: Lattice::Jitter,
         ..PLACEMENTS[0]
     };
-    let with_slabs = |placement: &Placement| placement.lattice != Lattice::Bresenham;
-    let placements = PLACEMENTS.into_iter().filter(with_slabs);
+    let placements = PLACEMENTS.into_iter().filter(Placement::has_slabs);
     for placement in placements.chain([jitter]) {
         for (projection, is_perspective) in PROJECTIONS {
             for (word, function) in FUNCTIONS {
