@@ -33,40 +33,44 @@ fn lamp_at(lamp: u32, voxel: vec3<f32>) -> f32 {
 // Where it is not on, a loop of no turns: drivers that go through both sides of a branch look at one corner, not eight.
 fn light_through(bundle: u32, voxel: vec3<f32>, towards: vec3<f32>, is_on: bool) -> f32 {
     let nearer = voxel + vec4(frame.light_reach * towards, 0.0) * frame.voxel_from_world;
-    let cell = light_cell(nearer);
+    let cell = light_cell(bundle, nearer);
     let corners = select(0u, 8u, is_on);
     var open = 0.0;
     for (var i = 0u; i < corners; i++) {
-        open += weight_of(cell, i) * light_at_corner(cell, bundle, i);
+        let corner = light_corner(cell, i);
+        open += corner.weight * corner.open;
     }
     return select(1.0, open, is_on);
 }
 
-// Between eight nodes.
+// Between eight nodes of a bundle. What does not change from node to node stands here: drivers do not lift it out of loops.
 struct LightCell {
     low: vec3<f32>,
     part: vec3<f32>,
+    nodes: vec3<u32>,
+    bundle: u32,
+    // What stands in where there is no light volume is shorter.
+    last: u32,
 }
 
-fn light_cell(voxel: vec3<f32>) -> LightCell {
+fn light_cell(bundle: u32, voxel: vec3<f32>) -> LightCell {
     let at = clamp(voxel * frame.light_cells_per_voxel, vec3(0.0), frame.light_cells);
     let low = min(floor(at), frame.light_cells - 1.0);
-    return LightCell(low, at - low);
-}
-
-fn corner_of(i: u32) -> vec3<u32> {
-    return vec3(i & 1u, (i >> 1u) & 1u, i >> 2u);
-}
-
-fn weight_of(cell: LightCell, i: u32) -> f32 {
-    let weights = select(1.0 - cell.part, cell.part, corner_of(i) != vec3(0u));
-    return weights.x * weights.y * weights.z;
-}
-
-fn light_at_corner(cell: LightCell, bundle: u32, i: u32) -> f32 {
     let nodes = vec3<u32>(frame.light_cells) + 1u;
-    let node = vec3<u32>(cell.low) + corner_of(i);
-    let index = node.x + nodes.x * (node.y + nodes.y * (node.z + nodes.z * bundle));
-    // What stands in where there is no light volume is shorter.
-    return light_volume.d[min(index, arrayLength(&light_volume.d) - 1u)];
+    return LightCell(low, at - low, nodes, bundle, arrayLength(&light_volume.d) - 1u);
+}
+
+// A node, what comes through to it, and its share of a place between the eight.
+struct LightCorner {
+    weight: f32,
+    open: f32,
+}
+
+fn light_corner(cell: LightCell, i: u32) -> LightCorner {
+    let corner = vec3(i & 1u, (i >> 1u) & 1u, i >> 2u);
+    let weights = select(1.0 - cell.part, cell.part, corner != vec3(0u));
+    let node = vec3<u32>(cell.low) + corner;
+    let index = node.x + cell.nodes.x * (node.y + cell.nodes.y * (node.z + cell.nodes.z * cell.bundle));
+    let open = light_volume.d[min(index, cell.last)];
+    return LightCorner(weights.x * weights.y * weights.z, open);
 }

@@ -11,12 +11,12 @@
 const DARKEST: f32 = -16.635532;
 
 fn scattered_light(bundle: u32, voxel: vec3<f32>, is_on: bool) -> f32 {
-    let cell = light_cell(voxel);
+    let cell = light_cell(bundle, voxel);
     let corners = select(0u, 8u, is_on);
     var exponent = 0.0;
     for (var i = 0u; i < corners; i++) {
-        let open = max(light_at_corner(cell, bundle, i), 1e-30);
-        exponent += weight_of(cell, i) * max(log(open), DARKEST);
+        let corner = light_corner(cell, i);
+        exponent += corner.weight * max(log(max(corner.open, 1e-30)), DARKEST);
     }
     return exp(exponent);
 }
