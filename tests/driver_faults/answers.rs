@@ -154,8 +154,8 @@ pub const ANSWERS: &[(&str, Fault, &str)] = &[
         "cells absorb what they show",
         Shader(
             "light_cells.wgsl",
-            "light_cells.d[index] = extinction_of(opacity, light_grid.cell_length);",
-            "light_cells.d[index] = opacity;",
+            "extinction_of(amount, light_grid.cell_length),",
+            "amount,",
         ),
         "slices_3d.over.composite.shadows.linear_fetch.f32.perspective",
     ),
@@ -181,8 +181,8 @@ pub const ANSWERS: &[(&str, Fault, &str)] = &[
         "nodes of light are weighed the wrong way round",
         Shader(
             "lib/light.wgsl",
-            "select(1.0 - part, part, corner",
-            "select(part, 1.0 - part, corner",
+            "select(1.0 - cell.part, cell.part, corner",
+            "select(cell.part, 1.0 - cell.part, corner",
         ),
         "raycast.ray.composite.occluded.linear_fetch.f32.perspective",
     ),
