@@ -2,7 +2,7 @@
 #              by apt where there is none): a line for each group of tests, what was skipped, and how many passed
 # make test-more   what takes longer: the whole conformance baseline, also as on a device of Vulkan's least limits and on
 #              SwiftShader (fetched by apt; skipped by name where that cannot be); the suite judged by injected faults and by
-#              the CPU reference; what draws once more without validation and under the least limits; each barrier of the
+#              the CPU reference; what draws once more under the least limits; each barrier of the
 #              examples taken away; many devices one after the other; other operating systems
 # make fresh   README's two commands, make test and make demo in a new clone without anything built or downloaded
 # make plain   what draws once more, without validation

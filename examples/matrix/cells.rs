@@ -7,7 +7,7 @@ use stratavox::scene::{Beside, Channel, Scene};
 use stratavox::technique::preclassified::preclassified;
 use stratavox::technique::{
     AmbientOcclusion, ClipPlane, CutFaces, Filter, GradientFilter, GradientStorage, Lattice, Level,
-    Light, Mode, Order, PerMode, Role, Settings, Shading, Shadows, Technique,
+    Light, Mode, Order, PerMode, Role, Settings, Shading, Shadows, SingleScattering, Technique,
 };
 use stratavox::transfer::{
     ColorPoint, GradientTransfer, Interpolation, OpacityPoint, Shape, TransferFunction, Widget,
@@ -206,6 +206,16 @@ pub const FEATURES: &[Feature] = &[
             lit.lights.truncate(1);
             lit.shadows = Shadows::HalfAngle;
             s.shading = Some(lit);
+        },
+    ),
+    feature(
+        "light that is scattered once",
+        "`--scattering single`",
+        Seen::Alone,
+        |s| {
+            s.single_scattering = Some(SingleScattering::Volume);
+            s.path.lights = lights().lights;
+            s.path.light_size_degrees = 6.0;
         },
     ),
     feature(

@@ -98,6 +98,10 @@ fn what_does_not_go_with_it_is_refused_by_name() {
         ("single --preset boundaries", "one volume of numbers"),
         ("single --stream", "--scattering single"),
         ("none --shadows march", "--scattering single"),
+        (
+            "none --technique pathtrace --shadows march",
+            "--scattering single",
+        ),
     ] {
         let input = match words {
             "single --component all" => "phantom:cells,n=16",

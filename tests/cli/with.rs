@@ -113,6 +113,15 @@ fn a_registration_moves_a_volume_as_a_shift_does() {
     let (wanted, _) = pixels(&folder, &format!("{words} --save-scene turned.json"));
     fs::remove_file(folder.path("turn.tfm")).expect("the file");
     assert!(pixels(&folder, "--scene turned.json").0 == wanted);
+    // A scene may say anything.
+    let scene = fs::read_to_string(folder.path("turned.json")).expect("a scene");
+    let mut scene: serde_json::Value = serde_json::from_str(&scene).expect("JSON");
+    let rows = &mut scene["with"][0]["transform"];
+    assert!(rows.is_array(), "{rows}");
+    rows[2] = serde_json::json!([0, 0, 0, 0]);
+    folder.file("flat.json", scene.to_string().into_bytes());
+    let ran = folder.run(&format!("render --scene flat.json -o p.npy {SMALL}"));
+    ran.assert_refused(2, &["inner.nrrd", "no inverse"]);
 }
 
 #[test]

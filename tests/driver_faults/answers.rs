@@ -77,6 +77,15 @@ pub const ANSWERS: &[(&str, Fault, &str)] = &[
         "raycast.planes.composite.slabs_ramps.linear_fetch.f32.perspective",
     ),
     (
+        "slabs are lit half a voxel beside their middles",
+        Shader(
+            "lib/material_slab.wgsl",
+            "slab.middle, slab",
+            "slab.middle + 0.5, slab",
+        ),
+        "reference.raycast.ray.composite.lit_slabs.linear_fetch.perspective",
+    ),
+    (
         "gradients are directions of the grid",
         Shader(
             "lib/gradient_central.wgsl",

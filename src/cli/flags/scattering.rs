@@ -97,12 +97,13 @@ impl PathFlags {
     ) -> Result<Settings, Error> {
         if !self.scatters_once() {
             return match light.shadows {
-                Some(ShadowsWord::March) if !settings.technique.traces_paths() => {
-                    Err(Error::usage(
-                        "--shadows march follows light from each sample, for --scattering single",
-                        "--shadows volume is for --shading phong too",
-                    ))
-                }
+                Some(ShadowsWord::March) => Err(Error::usage(
+                    "--shadows march follows light from each sample, for --scattering single",
+                    match settings.technique.traces_paths() {
+                        true => "path tracing has shadows without a flag",
+                        false => "--shadows volume is for --shading phong too",
+                    },
+                )),
                 _ => Ok(settings),
             };
         }

@@ -5,8 +5,9 @@ use super::{
     values::preset,
 };
 use crate::cli::registration;
+use crate::format::geometry::is_invertible;
 use clap::Args;
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat4, DVec3};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -80,13 +81,10 @@ impl WithFlags {
                 word.function = Some(Inlined::read(path)?);
             }
             if let Some(path) = &word.transform_file {
-                let affine = registration::read(path)?;
-                let rows = affine.matrix3.transpose().to_cols_array_2d();
-                let offset = affine.translation.to_array();
-                word.transform = Some([0, 1, 2].map(|i| {
-                    let [x, y, z] = rows[i];
-                    [x, y, z, offset[i]]
-                }));
+                let [x, y, z, _] = DMat4::from(registration::read(path)?)
+                    .transpose()
+                    .to_cols_array_2d();
+                word.transform = Some([x, y, z]);
             }
         }
         Ok(())
@@ -132,17 +130,23 @@ impl WithWord {
         }
     }
 
-    /// Moves it as the words say.
-    pub fn moved(&self, world_from_voxel: DAffine3) -> DAffine3 {
-        let rows = self.transform.unwrap_or([
-            [1.0, 0.0, 0.0, 0.0],
-            [0.0, 1.0, 0.0, 0.0],
-            [0.0, 0.0, 1.0, 0.0],
-        ]);
-        let columns = [0, 1, 2, 3].map(|k| DVec3::from_array(rows.map(|row| row[k])));
-        let registered = DAffine3::from_cols(columns[0], columns[1], columns[2], columns[3]);
+    /// Where the words move it to.
+    pub fn moved(&self, world_from_voxel: DAffine3) -> Result<DAffine3, Error> {
+        let registered = match self.transform {
+            Some([x, y, z]) => {
+                let rows = DMat4::from_cols_array_2d(&[x, y, z, [0.0, 0.0, 0.0, 1.0]]);
+                DAffine3::from_mat4(rows.transpose())
+            }
+            None => DAffine3::IDENTITY,
+        };
+        if !is_invertible(&registered) {
+            return Err(Error::usage(
+                format!("--with {}: its `transform` has no inverse", self.name()),
+                "three rows of four numbers put it into the world of INPUT",
+            ));
+        }
         let shift = DVec3::from_array(self.shift.unwrap_or_default());
-        DAffine3::from_translation(shift) * registered * world_from_voxel
+        Ok(DAffine3::from_translation(shift) * registered * world_from_voxel)
     }
 
     /// The words that name it, as those of INPUT say how to read.

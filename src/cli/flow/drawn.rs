@@ -1,9 +1,7 @@
 //! Geometry in a picture: lines along a wind and of the Earth, points as spheres.
 //!
 //! ```text
-//! radius = width / 2 pixels where the camera is turned to
-//! map    at sea level; on a level section of the Earth at the face of the slab that is seen
-//! head   a round cone from 2.8 radii to none, 10 radii long, every 60 pixels; of a comet its end (`moving`)
+//! words -> lines in the drawn world -> round cones and triangles for a camera (`placed`)
 //! ```
 
 use super::super::{
@@ -20,9 +18,7 @@ use super::flags::{FlowColor, FlowWord};
 use super::moving::{Passed, Tail, Way, Ways};
 use super::style::StyleWord;
 use crate::annotate::{ColorLegend, DegreeLine, GeometryLegend};
-use crate::camera::Camera;
 use crate::color::decode_srgb;
-use crate::geometry::{Geometry, RoundCones, Vertex};
 use crate::points::Points;
 use crate::volume::Header;
 use glam::DVec3;
@@ -33,17 +29,11 @@ const WIDTH: f64 = 3.0;
 const COMET_WIDTH: f64 = 6.0;
 /// Tails of particles, of the times of the file.
 const TAIL: f64 = 0.125;
-/// Of arrow heads: how far apart in pixels, how wide and how long in radii.
-const APART_PIXELS: f64 = 60.0;
-const HEAD_RADII: f64 = 2.8;
-const HEAD_LENGTH_RADII: f64 = 10.0;
-/// A direction that differs by less from straight down looks straight down.
-const LEVEL: f64 = 1e-9;
 
 /// Lines in the drawn world: of a wind, of the Earth.
 #[derive(Clone, Debug, Default)]
 pub struct DrawnLines {
-    sets: Vec<LineSet>,
+    pub(super) sets: Vec<LineSet>,
     /// What the colours of the wind mean, where they have several.
     legend: Option<ColorLegend>,
     /// Values at the ends of these colours.
@@ -52,8 +42,8 @@ pub struct DrawnLines {
     seeds: Vec<FilmSeed>,
     /// What other frames of a film draw up to their times.
     ways: Option<Arc<Ways>>,
-    barbs: Option<Barbs>,
-    ground: Option<Ground>,
+    pub(super) barbs: Option<Barbs>,
+    pub(super) ground: Option<Ground>,
     /// What symbols mean, a sentence each.
     words: Vec<String>,
     /// Meridians and parallels.
@@ -62,18 +52,18 @@ pub struct DrawnLines {
 
 /// Lines that look alike.
 #[derive(Clone, Debug)]
-struct LineSet {
-    lines: Vec<Vec<(DVec3, [f32; 3])>>,
-    width_pixels: f64,
+pub(super) struct LineSet {
+    pub(super) lines: Vec<Vec<(DVec3, [f32; 3])>>,
+    pub(super) width_pixels: f64,
     /// Of each line, where they differ: how wide it is of that.
-    shares: Option<Vec<f64>>,
+    pub(super) shares: Option<Vec<f64>>,
     /// The same of each place of each line.
-    tapers: Option<Vec<Vec<f64>>>,
-    has_heads: bool,
+    pub(super) tapers: Option<Vec<Vec<f64>>>,
+    pub(super) has_heads: bool,
     /// Of the map, in a section: half of its world thickness.
-    on_section: Option<f64>,
+    pub(super) on_section: Option<f64>,
     /// By its radius, over what it lies on.
-    is_lifted: bool,
+    pub(super) is_lifted: bool,
 }
 
 /// Pixels across a sphere of the largest value, and what the smallest has of it.
@@ -392,63 +382,6 @@ impl DrawnLines {
             degrees: &self.degrees,
         }
     }
-
-    /// As they are drawn for this camera in a picture of so many pixels.
-    pub fn geometry(&self, camera: &Camera, extent_pixels: [u32; 2]) -> Geometry {
-        let pixel = pixel_at_target(camera, extent_pixels);
-        let forward = camera.frame().forward;
-        let is_level = forward.z.abs() > 1.0 - LEVEL;
-        let mut cones = RoundCones::default();
-        for set in &self.sets {
-            let widest = 0.5 * set.width_pixels * pixel;
-            let height = set.on_section.filter(|_| is_level);
-            let height = height.map(|half| camera.target.z - half * forward.z);
-            for (i, line) in set.lines.iter().enumerate() {
-                let radius = widest * set.shares.as_ref().map_or(1.0, |shares| shares[i]);
-                let lift = match set.is_lifted {
-                    true => radius * DVec3::Z,
-                    false => DVec3::ZERO,
-                };
-                let vertex = |&(place, color): &(DVec3, [f32; 3])| Vertex {
-                    place: lift
-                        + DVec3 {
-                            z: height.unwrap_or(place.z),
-                            ..place
-                        },
-                    radius,
-                    color,
-                };
-                let taper = set.tapers.as_ref().map(|tapers| &tapers[i]);
-                match (&line[..], set.shares.is_some(), taper) {
-                    ([symbol], true, _) => cones.add_symbol(vertex(symbol)),
-                    (_, _, None) => cones.add_line(line.iter().map(vertex)),
-                    (_, _, Some(taper)) => {
-                        cones.add_line(line.iter().zip(taper).map(|(place, share)| Vertex {
-                            radius: share * radius,
-                            ..vertex(place)
-                        }));
-                    }
-                }
-                if set.has_heads {
-                    add_heads(&mut cones, line, radius, APART_PIXELS * pixel);
-                }
-            }
-        }
-        let mut geometry = Geometry::from(cones);
-        if let Some(ground) = &self.ground {
-            geometry.triangles = ground.triangles.clone();
-        }
-        if let Some(barbs) = &self.barbs {
-            let forward = camera.frame().forward;
-            barbs.add(&mut geometry, pixel, |place| {
-                match camera.projection.is_perspective() {
-                    true => (camera.eye - place).normalize_or_zero(),
-                    false => -forward,
-                }
-            });
-        }
-        geometry
-    }
 }
 
 /// What is drawn is seldom the wind. What there is to say of the file was said of the volume.
@@ -471,42 +404,4 @@ fn ink_on(background: Option<[f64; 4]>) -> [f64; 3] {
 
 fn is_light(background: Option<[f64; 4]>) -> bool {
     background.is_some_and(|[r, g, b, a]| a > 0.5 && (r + g + b) / 3.0 > 0.6)
-}
-
-/// World length of a pixel at the distance of the target.
-fn pixel_at_target(camera: &Camera, extent_pixels: [u32; 2]) -> f64 {
-    let rays = camera.rays(extent_pixels);
-    match camera.projection.is_perspective() {
-        true => rays.direction_dx.length() * (camera.target - camera.eye).dot(rays.forward),
-        false => rays.origin_dx.length(),
-    }
-}
-
-/// Heads along a line; one in its middle where it is short.
-fn add_heads(cones: &mut RoundCones, line: &[(DVec3, [f32; 3])], radius: f64, apart: f64) {
-    let chords = || line.windows(2).map(|pair| (pair[1].0 - pair[0].0).length());
-    let length: f64 = chords().sum();
-    if length < HEAD_LENGTH_RADII * radius {
-        return;
-    }
-    let count = (length / apart).floor().max(1.0);
-    let mut next = 0.5 * length / count;
-    let mut done = 0.0;
-    for pair in line.windows(2) {
-        let [(a, color), (b, _)] = [pair[0], pair[1]];
-        let chord = (b - a).length();
-        while next <= done + chord && next < length {
-            let along = (b - a) / chord;
-            let place = a + (next - done) * along;
-            let end = |place, radius| Vertex {
-                place,
-                radius,
-                color,
-            };
-            let tip = place + HEAD_LENGTH_RADII * radius * along;
-            cones.add_line([end(place, HEAD_RADII * radius), end(tip, 0.05 * radius)]);
-            next += length / count;
-        }
-        done += chord;
-    }
 }

@@ -13,6 +13,7 @@ mod film;
 mod flags;
 mod ground;
 mod moving;
+mod placed;
 mod seeds;
 mod style;
 mod tubes;

@@ -74,10 +74,10 @@ pub fn parts(bytes: &[u8]) -> Result<Vec<Part>, String> {
         })?;
         match (name.as_str(), parts.last_mut()) {
             ("fixed", Some(part)) => part.fixed = numbers,
-            _ => {
-                parts.push(Part::new(&name));
-                parts.last_mut().expect("just pushed").parameters = numbers;
-            }
+            _ => parts.push(Part {
+                parameters: numbers,
+                ..Part::new(&name)
+            }),
         }
     }
     Ok(parts)

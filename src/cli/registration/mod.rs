@@ -9,14 +9,12 @@ mod parts;
 mod text;
 
 use super::{Error, small_file::parsed};
-use glam::{DAffine3, DMat3, dvec3};
+use crate::format::geometry::{RAS_FROM_LPS, is_invertible};
+use glam::{DAffine3, DMat3};
 use std::path::Path;
 
 /// A linear transform takes some hundred bytes.
 const MAX_FILE_BYTES: u64 = 1 << 16;
-
-/// A matrix with a smaller part of the volume that its columns span at right angles has no inverse worth its name.
-const LEAST_DETERMINANT: f64 = 1e-9;
 
 /// World of the fixed volume from that of the moving one, RAS+, in millimetres.
 ///
@@ -50,23 +48,20 @@ fn fixed_from_moving(bytes: &[u8]) -> Result<DAffine3, String> {
         }
     };
     let moving_from_fixed = parts::composed(&parts)?;
-    let matrix = moving_from_fixed.matrix3;
-    let lengths = matrix.x_axis.length() * matrix.y_axis.length() * matrix.z_axis.length();
-    let is_regular = matrix.determinant().abs() > LEAST_DETERMINANT * lengths;
-    if !moving_from_fixed.is_finite() || !is_regular {
+    if !is_invertible(&moving_from_fixed) {
         return Err(format!(
-            "wanted a matrix with an inverse, found the determinant {}",
-            matrix.determinant()
+            "wanted a matrix with an inverse, found {}",
+            moving_from_fixed.matrix3
         ));
     }
-    let flip = DAffine3::from_mat3(DMat3::from_diagonal(dvec3(-1.0, -1.0, 1.0)));
+    let flip = DAffine3::from_mat3(DMat3::from_diagonal(RAS_FROM_LPS));
     Ok(flip * moving_from_fixed.inverse() * flip)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DVec3;
+    use glam::{DVec3, dvec3};
 
     fn text(transform: &str) -> Vec<u8> {
         format!("#Insight Transform File V1.0\n#Transform 0\n{transform}\n").into_bytes()
@@ -78,8 +73,8 @@ mod tests {
         let at = dvec3(10.0, -20.0, 30.0);
         for (transform, wanted) in CASES {
             let found = fixed_from_moving(&text(transform)).expect(transform);
-            let flip = dvec3(-1.0, -1.0, 1.0);
-            let moved = found.transform_point3(DVec3::from_array(*wanted) * flip) * flip;
+            let wanted = RAS_FROM_LPS * DVec3::from_array(*wanted);
+            let moved = RAS_FROM_LPS * found.transform_point3(wanted);
             assert!((moved - at).length() < 1e-9, "{transform}: {moved}");
         }
     }
@@ -90,7 +85,7 @@ mod tests {
         let flat = "Transform: AffineTransform_double_3_3\nParameters: 1 0 0 2 0 0 0 0 1 0 0 0\nFixedParameters: 0 0 0";
         for (bytes, wanted) in [
             (text(affine), "FixedParameters"),
-            (text(flat), "determinant"),
+            (text(flat), "with an inverse"),
             (
                 text("Transform: BSplineTransform_double_3_3\nParameters: 1\nFixedParameters: 1"),
                 "BSplineTransform",
@@ -116,7 +111,7 @@ mod tests {
                 text(
                     "Transform: Euler3DTransform_double_3_3\nParameters: nan 0 0 0 0 0\nFixedParameters: 0 0 0",
                 ),
-                "determinant",
+                "with an inverse",
             ),
             (
                 text(

@@ -6,7 +6,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Part {
     /// Its class: `AffineTransform_double_3_3`.
-    class: String,
+    pub class: String,
     /// What a registration finds.
     pub parameters: Vec<f64>,
     /// What it keeps.

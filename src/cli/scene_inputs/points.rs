@@ -124,6 +124,7 @@ fn check_spheres(scene: &SceneFlags, mode: Mode) -> Result<(), Error> {
         ("--shading phong", is_lit),
         ("--shadows", light.shadows.is_some()),
         ("--ambient-occlusion", light.ambient_occlusion.is_some()),
+        ("--scattering single", scene.path.scatters_once()),
     ];
     let given = of_samples.into_iter().find(|(_, is_given)| *is_given);
     match mode.or(given.map(|(word, _)| word.to_owned())) {

@@ -51,7 +51,7 @@ impl Reader<'_> {
         self.progress.loaded(loaded);
         say_what_was_lost(&volume, &format!("voxels of {name}"), self.progress);
         denoise(std::slice::from_mut(&mut volume), self.scene)?;
-        volume.world_from_voxel = word.moved(volume.world_from_voxel);
+        volume.world_from_voxel = word.moved(volume.world_from_voxel)?;
         volume.world_from_voxel = exaggerate::stretched(volume.world_from_voxel, height_factor);
         if is_same_grid(grid, &volume.grid()) {
             volume.world_from_voxel = grid.world_from_voxel;

@@ -1,5 +1,5 @@
 //! Everything that is drawn, against the same functions on the CPU in f64: filters through voxels, surfaces, local
-//! and attenuated maxima, MIDA, light, functions of gradients, holes.
+//! and attenuated maxima, MIDA, light, lit slabs, functions of gradients, holes.
 //!
 //! Two bounds: the running error of the picture is a worst case, and what lies outside of it is wrong. The second takes
 //! it that a device rounds about as well as the CPU reference in f32 does: what lies outside of that is a warning.

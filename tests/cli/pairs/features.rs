@@ -76,6 +76,7 @@ pub const FEATURES: &[Feature] = &[
         "shadows",
         "--shading phong --shadows volume --light 1,-1,1",
     ),
+    feature("scattering", "single scattering", "--scattering single"),
     feature(
         "function",
         "function of value and gradient",

@@ -4,6 +4,7 @@ mod classification;
 mod modes;
 mod paths;
 mod points;
+mod scattering;
 mod sections;
 mod several;
 mod streams;
@@ -68,6 +69,7 @@ const fn of(features: &'static [&'static str], rule: Rule) -> Rule {
 pub static RULES: LazyLock<Vec<&'static Rule>> = LazyLock::new(|| {
     let files = [
         sections::RULES,
+        scattering::RULES,
         modes::RULES,
         paths::RULES,
         techniques::RULES,
