@@ -190,14 +190,14 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     (
         "raycast",
         &[
-            LINE, MODE, LEAN, RAY, NARROW, HOLES, TABLE, TAPS, SPACE, LAYERS,
+            LINE, MODE, LEAN, LATTICE, NARROW, HOLES, TABLE, TAPS, SPACE, LAYERS,
         ],
     ),
     (
         "raycast",
         // With layers in any case: on llvmpipe a lit picture alone was found to take 2 % longer.
         &[
-            LINE, MODE, LEAN, RAY, CORNERS, HOLES, STORED, SHARED, SPACE, CUTS,
+            LINE, MODE, LEAN, LATTICE, CORNERS, HOLES, STORED, SHARED, SPACE, CUTS,
         ],
     ),
     (

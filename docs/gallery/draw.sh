@@ -23,3 +23,19 @@ draw nuclei tiff-nuclei/img3d.tif --mode mida --samples-per-voxel 2 --zoom 1.1
 draw pet dicom-pet --mode mip --denoise nlm --view anterior --zoom 1.3
 # Two people: the heart of the second is moved into the chest of the first.
 draw ct-pet ct-torso/torso-2x.mha --with "$volumes/dicom-pet,preset=pet,shift=10:-344:80" --view anterior
+
+# Shells of a few voxels at 45 degrees, where stacks switch: classic and cured, by each technique.
+at_45() {
+    name=$1
+    shift
+    "$program" render phantom:shells,n=64 --look plain --preset grey --azimuth 45 --elevation 12 --zoom 1.7 --size 240x240 --force \
+        --progress none -o "$here/45-$name.png" "$@"
+}
+at_45 slices --technique slices-2d
+at_45 slices-cured --technique slices-2d --smooth --preintegrated
+at_45 shear-warp --technique shear-warp
+at_45 shear-warp-cured --technique shear-warp --preintegrated --intermediate 2
+at_45 splats --technique splat --sheets axis
+at_45 splats-cured --technique splat
+at_45 bresenham --lattice bresenham
+at_45 bresenham-cured --lattice bresenham --samples-per-voxel 4

@@ -3,8 +3,10 @@
 use glam::{DAffine3, DMat3, DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
 use stratavox::picture::ColorSpace;
+use stratavox::points::Points;
 use stratavox::scene::{Beside, Channel, Scene};
 use stratavox::technique::preclassified::preclassified;
+use stratavox::technique::splat::Splat;
 use stratavox::technique::{
     AmbientOcclusion, ClipPlane, CutFaces, Filter, GradientFilter, GradientStorage, Lattice, Level,
     Light, Mode, Order, PerMode, Role, Settings, Shading, Shadows, SingleScattering, Technique,
@@ -74,6 +76,8 @@ pub enum Seen {
     Veiled,
     /// One whose voxels are classified already.
     Classified,
+    /// Scattered points in place of a volume.
+    Points,
 }
 
 /// Something that can be asked for beside technique, mode and filter.
@@ -295,6 +299,23 @@ pub const FEATURES: &[Feature] = &[
     ),
     feature("colours", "a file of colours", Seen::Colored, |_| {}),
     feature(
+        "scattered points",
+        "`--points-as splats`",
+        Seen::Points,
+        |s| s.splat = Splat::of_points(),
+    ),
+    feature(
+        "scattered points, clip planes",
+        "`--points-as splats`, `--clip`",
+        Seen::Points,
+        |s| {
+            s.splat = Splat::of_points();
+            let normal = dvec3(0.6, -0.64, 0.48);
+            let offset = normal.dot(center()) - 1.0;
+            s.clip_planes = vec![ClipPlane { normal, offset }];
+        },
+    ),
+    feature(
         "opacity by another",
         "`--opacity-variable`, `--opacity-from`",
         Seen::Veiled,
@@ -471,6 +492,9 @@ pub struct Matter {
     others: [Volume; 2],
     elsewhere: Volume,
     classified: [Volume; 4],
+    points: Points,
+    /// Where they are, and which values they have.
+    binned: Volume,
     labels: Volume,
     function: TransferFunction,
     gradient_transfer: TransferFunction,
@@ -499,6 +523,7 @@ impl Matter {
         let length = numbers.grid().smallest_spacing();
         let classified = preclassified(&numbers, &function(), length, ColorSpace::default());
         let span = DVec3::from_array(DIMS.map(f64::from)).length();
+        let points = points(wave(0.8, 0.7));
         let bowl = |p: DVec3| {
             let square = (p - dvec3(9.0, -16.0, 12.0)).length_squared();
             0.1 + 0.8 * (square - 280.0) / 700.0
@@ -523,6 +548,8 @@ impl Matter {
             holed,
             classified: classified.expect("volumes of the right length"),
             elsewhere: volume_elsewhere(),
+            binned: points.binned(),
+            points,
             others: [volume(wave(0.5, 1.1)), volume(wave(1.2, 0.4))],
             labels: map,
             function: function(),
@@ -585,6 +612,7 @@ impl Matter {
             | Seen::Holed
             | Seen::Bowl
             | Seen::Denoised => Beside::Nothing,
+            Seen::Points => Beside::Points(&self.points),
         };
         Scene {
             volume: match seen {
@@ -592,6 +620,7 @@ impl Matter {
                 Seen::Bowl => &self.bowl,
                 Seen::Denoised => &self.denoised,
                 Seen::Classified => &self.classified[0],
+                Seen::Points => &self.binned,
                 _ => &self.numbers,
             },
             transfer: Some(match seen {
@@ -613,6 +642,25 @@ impl Matter {
             _ => Vec::new(),
         }
     }
+}
+
+/// One in each third voxel along each axis, from a third of a pixel to two voxels wide.
+fn points(field: impl Fn(DVec3) -> f64) -> Points {
+    let [nx, ny, nz] = DIMS.map(|n| n.div_ceil(3));
+    let all = (0..nz).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])));
+    let at: Vec<_> = all
+        .map(|p| 3.0 * DVec3::from_array(p.map(f64::from)) + 1.0)
+        .collect();
+    let places = at.iter().map(|&p| world_from_voxel().transform_point3(p));
+    let values = at.iter().map(|&p| field(p) as f32);
+    let stds = (0..at.len()).map(|i| 0.3 + 1.7 * ((i * 37 % 101) as f32 / 100.0));
+    Points::new(
+        places.collect(),
+        values.collect(),
+        Some(stds.collect()),
+        None,
+    )
+    .expect("lists of one length")
 }
 
 fn volume(field: impl Fn(DVec3) -> f64) -> Volume {

@@ -47,9 +47,9 @@ fn segment_of(lattice: Lattice, world: Ray, k: i32) -> Segment {
     return Segment(t, select(0.0, height_length(line), inside));
 }
 
-// The first and the last may still lie outside, and are looked at like all others.
+// One between two that lie inside.
 fn whole_segment(lattice: Lattice, world: Ray, k: i32) -> Segment {
-    return segment_of(lattice, world, k);
+    return Segment(height_t(main_axis(world), k), height_length(main_axis(world)));
 }
 
 // Samples lie at t = x + k y.

@@ -20,9 +20,9 @@ fn segment_of(lattice: Lattice, world: Ray, k: i32) -> Segment {
     return Segment(t, select(0.0, plane_length(world), inside));
 }
 
-// The first and the last may still lie outside, and are looked at like all others.
+// One between two that lie inside.
 fn whole_segment(lattice: Lattice, world: Ray, k: i32) -> Segment {
-    return segment_of(lattice, world, k);
+    return Segment(plane_t(world, k), plane_length(world));
 }
 
 // Samples lie at t = x + k y.

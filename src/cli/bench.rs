@@ -191,7 +191,7 @@ impl Bench {
             progress.stage("draw", done, count);
             frames.push(timed(&mut renderer, camera)?);
         }
-        let stages = renderer.stages(&progress, gate, None);
+        let stages = renderer.stages(&cameras[cameras.len() - 1], &progress, gate, None);
         let timings = Timings {
             device: renderer.device(),
             driver: renderer.driver(),

@@ -294,7 +294,7 @@ impl Render {
         if self.output.is_none() {
             progress.note(&format!("drawn into {}", output.display()));
         }
-        let stages = renderer.stages(&progress, gate, Some(ms_since(start)));
+        let stages = renderer.stages(camera, &progress, gate, Some(ms_since(start)));
         if let Some(path) = &self.save_scene {
             let integrals = match classification {
                 Classification::RangeOfPicture => Some(renderer.projected_range(camera)?),

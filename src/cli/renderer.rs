@@ -16,7 +16,7 @@ use crate::{
     offscreen::{self, Ceilings, Kept, Stream, Traced, reference},
     picture::{LayerKind, Picture},
     scene::{Beside, Scene},
-    technique::{Filter, Mode, Role, Settings, layers::Lack},
+    technique::{Filter, InPixel, Mode, Role, Settings, layers::Lack},
     volume::{Denoise, Volume, labels::labels_of},
 };
 use std::panic::resume_unwind;
@@ -369,14 +369,21 @@ impl<'a> Renderer<'a> {
         })
     }
 
-    /// What the work took until now.
-    pub fn stages(&self, progress: &Progress, gate: &Gate, encode_ms: Option<f64>) -> Stages {
+    /// What the work took until now, the last picture being that of `camera`.
+    pub fn stages(
+        &self,
+        camera: &Camera,
+        progress: &Progress,
+        gate: &Gate,
+        encode_ms: Option<f64>,
+    ) -> Stages {
         let loaded = progress.all_loaded();
         let on_device = self.on_device.as_ref();
         let submitted = on_device.map(|renderer| renderer.device().submissions());
         let submitted = submitted.unwrap_or_default();
         let filtered = on_device.and_then(|renderer| renderer.filtered(self.job.settings));
-        Stages {
+        let grid = self.job.volume.grid();
+        let stages = Stages {
             read_ms: in_ms(loaded.read),
             statistics_ms: in_ms(loaded.statistics),
             device_ms: self.device_ms,
@@ -388,7 +395,9 @@ impl<'a> Renderer<'a> {
             longest_submission_ms: submitted.longest_ms,
             filtered_by: filtered.map(|filtered| filtered.by),
             filtered_because: filtered.map(|filtered| filtered.because),
-        }
+            ..Stages::default()
+        };
+        stages.with_view(&self.job.scene(camera).view(&grid, InPixel::CENTER))
     }
 
     /// The device, free for another volume, with its pipelines and images.

@@ -1,5 +1,8 @@
 //! What the work took: the file of `--timings`.
 
+use crate::technique::shear_warp::base_plane;
+use crate::technique::splat::Sheets;
+use crate::technique::{Technique, View};
 use crate::volume::{Header, Limits, Piece, ReadError, Source, TimeComponent, Volume, VoxelBox};
 use serde::Serialize;
 use std::path::Path;
@@ -60,6 +63,56 @@ pub struct Stages {
     pub filtered_by: Option<&'static str>,
     /// Why that.
     pub filtered_because: Option<&'static str>,
+    /// The intermediate image of the last picture by shear-warp; `null` for other techniques.
+    pub intermediate: Option<IntermediateImage>,
+    /// The splats of the last picture; `null` for other techniques.
+    pub splat: Option<SplatSize>,
+}
+
+/// Where base rays of shear-warp begin.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct IntermediateImage {
+    /// Across and down, in base pixels.
+    pub extent_base_pixels: [u32; 2],
+    /// Base pixels per voxel.
+    pub per_voxel: f64,
+}
+
+/// How large splats of a volume are.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SplatSize {
+    /// Standard deviation, in voxels.
+    pub std_voxels: f64,
+    /// No splat is thinner than so many pixels.
+    pub low_pass_pixels: f64,
+    /// Into how many image-aligned sheets a slice of splats reaches at most; `null` where there are none.
+    pub open_sheets: Option<f64>,
+}
+
+impl Stages {
+    /// With what a technique makes of this view.
+    pub fn with_view(self, view: &View) -> Self {
+        let technique = view.settings.technique;
+        let base = match technique {
+            Technique::ShearWarp => base_plane(view).ok(),
+            _ => None,
+        };
+        let splat = view.settings.splat;
+        let is_volume = technique == Technique::Splat && !splat.of_points;
+        let has_sheets = splat.sheets == Sheets::Image;
+        Self {
+            intermediate: base.map(|base| IntermediateImage {
+                extent_base_pixels: base.extent,
+                per_voxel: base.per_voxel,
+            }),
+            splat: is_volume.then(|| SplatSize {
+                std_voxels: splat.std,
+                low_pass_pixels: splat.low_pass,
+                open_sheets: has_sheets.then(|| view.open_sheets().ceil()),
+            }),
+            ..self
+        }
+    }
 }
 
 /// What reading a volume took.
@@ -213,6 +266,8 @@ mod tests {
             "longest_submission_ms",
             "filtered_by",
             "filtered_because",
+            "intermediate",
+            "splat",
         ] {
             assert!(value.get(key).is_some(), "no {key} in {value}");
         }

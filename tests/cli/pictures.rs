@@ -123,6 +123,38 @@ fn timings_have_a_frame_for_each_repeat() {
 }
 
 #[test]
+fn timings_say_how_large_the_intermediate_image_and_splats_were() {
+    let folder = Folder::new();
+    let timed = |words: &str| {
+        let all = "render phantom:fog,n=8 --look plain -o a.npy --force --timings t.json";
+        folder.run(&format!("{all} {words} {SMALL}")).assert_done();
+        json(&fs::read_to_string(folder.path("t.json")).expect("a file"))
+    };
+    let rays = timed("");
+    assert!(rays["intermediate"].is_null() && rays["splat"].is_null());
+    let width = |q: &str| {
+        let of = timed(&format!("--technique shear-warp --intermediate {q}"));
+        assert_eq!(of["intermediate"]["per_voxel"].to_string(), q);
+        let extent = &of["intermediate"]["extent_base_pixels"];
+        extent[0].as_f64().expect("a width")
+    };
+    // Two base pixels a voxel are twice as many, but for the margin of two at each end.
+    let (once, twice) = (width("1.0"), width("2.0"));
+    assert!(
+        (twice - 4.0 - 2.0 * (once - 4.0)).abs() <= 4.0,
+        "{once}, {twice}"
+    );
+    let image = timed("--technique splat --splat-std 0.7");
+    assert_eq!(image["splat"]["std_voxels"], 0.7);
+    assert!(
+        image["splat"]["open_sheets"].as_f64() > Some(5.0),
+        "{image}"
+    );
+    let axis = timed("--technique splat --sheets axis");
+    assert!(axis["splat"]["open_sheets"].is_null(), "{axis}");
+}
+
+#[test]
 fn progress_as_json_is_one_object_a_line() {
     let folder = Folder::new();
     let ran = folder.run(&format!(

@@ -116,7 +116,7 @@ fn a_registration_moves_a_volume_as_a_shift_does() {
     // A scene may say anything.
     let scene = fs::read_to_string(folder.path("turned.json")).expect("a scene");
     let mut scene: serde_json::Value = serde_json::from_str(&scene).expect("JSON");
-    let rows = &mut scene["with"][0]["transform"];
+    let rows = &mut scene["with"]["with"][0]["transform"];
     assert!(rows.is_array(), "{rows}");
     rows[2] = serde_json::json!([0, 0, 0, 0]);
     folder.file("flat.json", scene.to_string().into_bytes());

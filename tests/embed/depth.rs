@@ -78,7 +78,7 @@ fn stages() -> Vec<Stage> {
             mode,
             preintegrated,
             lattice: match technique {
-                Technique::Raycast => Lattice::Ray,
+                Technique::Raycast | Technique::Splat => Lattice::Ray,
                 _ => Lattice::Planes,
             },
             ..Settings::default()
@@ -93,8 +93,8 @@ fn stages() -> Vec<Stage> {
             of(technique, Mode::Average, false),
         ]
     });
-    let rays = of(Technique::Raycast, Mode::Composite, false);
-    [rays].into_iter().chain(sliced).collect()
+    let cast = [Technique::Raycast, Technique::Splat].map(|by| of(by, Mode::Composite, false));
+    cast.into_iter().chain(sliced).collect()
 }
 
 /// As [`embed_shared::assert_close`] has it for f32 targets, of 60 slices; and where a ray ends, the sample there may
@@ -153,7 +153,7 @@ fn what_a_host_has_drawn_hides_what_lies_behind_it_and_no_more() {
             let alone = draw(&host, &stage, &camera, &depth, &open, None);
             let width = stage.extent[0];
             let near_moved = match technique {
-                Technique::Raycast => END_MOVED,
+                Technique::Raycast | Technique::Splat => END_MOVED,
                 _ => near_moved(&host, &camera, &depth, stage.extent),
             };
             let (mut worst, mut hidden) = (0.0f64, 0);

@@ -205,6 +205,7 @@ fn bytes_are_drawn_as_offscreen_too() {
         Technique::Slices3d,
         Technique::Slices2d,
         Technique::ShearWarp,
+        Technique::Splat,
     ] {
         let mut stage = stage(&Settings {
             technique,
@@ -319,6 +320,7 @@ fn a_renderer_goes_on_with_another_size_another_volume_and_other_numbers() {
         Technique::Slices3d,
         Technique::Slices2d,
         Technique::ShearWarp,
+        Technique::Splat,
     ] {
         let mut stage = stage(&Settings {
             technique,

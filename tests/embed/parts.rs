@@ -25,6 +25,7 @@ fn ways() -> Vec<Settings> {
         (Technique::Slices3d, Mode::Mip),
         (Technique::ShearWarp, Mode::Composite),
         (Technique::ShearWarp, Mode::Mip),
+        (Technique::Splat, Mode::Composite),
     ];
     let settings = ways.map(|(technique, mode)| Settings {
         technique,
@@ -46,12 +47,14 @@ fn ways() -> Vec<Settings> {
 
 /// Blocks, of half the side where slices of many bricks are thought to take long, or draws of eye and light.
 fn assert_count(settings: &Settings, is_cut: bool, count: u64) {
-    let is_sliced = settings.technique != Technique::Raycast;
+    let is_sliced = !matches!(settings.technique, Technique::Raycast | Technique::Splat);
     match settings.shading.is_some() {
         // Bands of the intermediate image, and three of the picture.
         false if settings.technique == Technique::ShearWarp => {
             assert!((4..12).contains(&count), "{count}")
         }
+        // Blocks of a quarter of the side: of each pixel the voxels near its ray are looked at.
+        false if settings.technique == Technique::Splat => assert_eq!(count, 60),
         true => assert!(count > 20 && count.is_multiple_of(2), "{count}"),
         false if is_cut && is_sliced => assert!([6, 15].contains(&count), "{count}"),
         false => assert_eq!(count, 6),

@@ -223,6 +223,8 @@ impl Renderer<'_> {
             Some(alike) => EmptySpace::with_alike(gpu, &cells[0], &seen[0].1, alike),
             None => EmptySpace::of_several(gpu, &several),
         };
+        // Most cells look at some ten others.
+        let expected_ms = ms_of_fetches(gpu, cells[0].cell_count() as f64);
         let Some(made) = if_it_fits(made)? else {
             return Ok(None);
         };
@@ -233,8 +235,6 @@ impl Renderer<'_> {
                 None => return Ok(None),
             },
         };
-        // Most cells look at some ten others.
-        let expected_ms = ms_of_fetches(self.device.gpu(), cells[0].cell_count() as f64);
         for pass in made.group_runs()? {
             let work = Work::beside(pass, expected_ms);
             self.slices
@@ -248,7 +248,7 @@ impl Renderer<'_> {
 
     /// The voxels of the one volume in which something may be seen; `None` where cells are enough.
     fn full_voxels(
-        &self,
+        &mut self,
         scene: &Scene,
         seen: &VisibleRanges,
         skip_by: SkipBy,
@@ -265,7 +265,8 @@ impl Renderer<'_> {
         let spline = scene.settings.filter.spline();
         let read = spline.map(|spline| Coefficients::new(volume, spline, [true; 3]));
         let read = read.as_ref().map_or(volume, Coefficients::volume);
-        Some(made(self.device.gpu(), &full_of_seen(read, seen, halo)))
+        let full = full_of_seen(read, seen, halo);
+        Some(made(&mut self.device, &full))
     }
 
     /// Objects for the cells of volume number `number` of the picture.

@@ -64,9 +64,9 @@ impl Raycast {
             is_scattered,
             ..
         } = variant;
-        // Kernels, planes and exact control points have the general variant alone.
+        // Kernels, slices and exact control points have the general variant alone.
         let has_lean = of == Mode::Composite
-            && *lattice == "ray"
+            && *lattice != "stack"
             && *transfer != "points"
             && !matches!(*filter, "kernel" | "spline");
         let mix = if has_lean { *mix } else { mix.general() };

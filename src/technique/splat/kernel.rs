@@ -164,7 +164,7 @@ impl View<'_> {
         if uses_stack(self.settings) {
             self.check_stack()?;
         } else if sheets_of(self.settings.mode, self.settings.splat.sheets) == Sheets::Image {
-            self.check_open_sheets(&kernel)?;
+            self.check_open_sheets()?;
         }
         let m = kernel.precision;
         let [low, high] = self.domain();
@@ -201,15 +201,21 @@ impl View<'_> {
         })
     }
 
-    fn check_open_sheets(&self, kernel: &Kernel) -> Result<(), Error> {
+    /// How many image-aligned sheets a slice of splats reaches into at most.
+    pub(crate) fn open_sheets(&self) -> f64 {
+        let kernel = Kernel::of(self);
         let step = self.step_world();
         let open = self.some_rays().map(|(origin, direction, cosine)| {
             let (o, d) = (origin.to_array(), direction.to_array());
-            let line = Line::of_kernel(kernel, main_axis(d), o, d);
+            let line = Line::of_kernel(&kernel, main_axis(d), o, d);
             2.0 * line.reach * cosine / step
         });
         // The sheets at both ends are cut by the reach.
-        let open = open.fold(0.0, f64::max) + 2.0;
+        open.fold(0.0, f64::max) + 2.0
+    }
+
+    fn check_open_sheets(&self) -> Result<(), Error> {
+        let open = self.open_sheets();
         Error::unless(
             open <= MAX_OPEN_SHEETS as f64,
             "the number of image-aligned sheets that a slice of splats reaches into",

@@ -142,7 +142,9 @@ fn compare(shot: &PictureCase, volume: &Volume, axis: usize) -> usize {
         };
         let of_place = place_error(&base, pixel);
         let mut take = |wanted: f64, found: f32, range: f64| {
-            // A place on a slice is off by as much more as the ray is steep beside it, and so is the length of a sample.
+            // What is asked of a composite in f32 against its formula is 5e-6. On a slice a place lies at o_i + (m + 1/2 - o_k) s,
+            // s = d_i / d_k: with each component of d off by e, s is off by e (1 + s) / d_k, which grows as the square of how
+            // steep the ray is; the length of a sample, 1 / d_k, is off by e / d_k^2.
             let of_rays = 5e-6 * steepness * steepness;
             let allowed = of_rays * wanted.abs().max(1.0) + of_place * range;
             worst.take(pixel, f64::from(found) - wanted, allowed);
