@@ -4,7 +4,7 @@
 //! settings.skippable(mix, function, ..)          what can be left out of such a picture
 //!     MacroCells::new(gpu, volume, settings.halo())     once a volume
 //!     EmptySpace::new(gpu, &cells, &seen)                once a transfer function
-//! settings.skippable_in_all(functions)           the same of a mixture
+//! settings.skippable_in_all(seen)                the same of a mixture
 //!     EmptySpace::of_several(gpu, &[(&cells, &seen), ..])
 //! recording.skip(&skip), Inputs { skip, .. }     for each recording
 //! ```
@@ -135,21 +135,18 @@ impl Settings {
         is_central.then(|| 0.5 * rows * grid.smallest_spacing())
     }
 
-    /// What rays leave out of pictures of several volumes, given the functions of those that have opacity, by their
-    /// numbers.
-    pub fn skippable_in_all(&self, functions: &[(usize, &TransferFunction)]) -> Skippable {
+    /// What rays leave out of pictures of several volumes, given what is seen of those that have opacity, by their numbers.
+    pub fn skippable_in_all(&self, seen: Vec<(usize, VisibleRanges)>) -> Skippable {
         // Patches of mixed slices cost more than they have been seen to leave out.
         let is_mixed = self.technique.casts_rays() && self.mode == Mode::Composite;
         if !self.skip
             || !is_mixed
             || self.preintegrated
-            || functions.is_empty()
+            || seen.is_empty()
             || self.technique.splats()
         {
             return Skippable::Nothing;
         }
-        let seen = functions.iter().map(|&(n, f)| (n, VisibleRanges::new(f)));
-        let seen: Vec<_> = seen.collect();
         match seen.iter().any(|(_, seen)| seen.is_all()) {
             true => Skippable::Nothing,
             false => Skippable::UnseenInAll(seen),

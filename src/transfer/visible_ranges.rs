@@ -120,6 +120,11 @@ impl VisibleRanges {
         }
     }
 
+    /// All numbers over 0, but for those so small that arithmetic may take them for it: of what is an amount already.
+    pub fn positive() -> Self {
+        Self::of_spans(vec![[4.0 * f64::from(f32::MIN_POSITIVE), f64::INFINITY]])
+    }
+
     /// Of ranges of values, ends included.
     fn of_spans(spans: Vec<[f64; 2]>) -> Self {
         let ends = || spans.iter().flatten().copied().filter(|v| v.is_finite());
@@ -393,6 +398,18 @@ mod tests {
                     table.entries[entry as usize][3] > 0.0 || function.opacity(value.into()) > 0.0;
                 assert!(!shown || seen.shows([value; 2]), "{points:?} at {value}");
             }
+        }
+    }
+
+    #[test]
+    fn amounts_are_seen_where_there_is_any() {
+        let seen = VisibleRanges::positive();
+        assert!(!seen.shows([0.0, 0.0]) && !seen.shows([-3.0, 0.0]));
+        for most in [1e-37, 1e-20, 1.0, 3.0, 1e30] {
+            assert!(
+                seen.shows([0.0, most]) && seen.shows([most, most]),
+                "{most}"
+            );
         }
     }
 }

@@ -5,7 +5,9 @@ use crate::skipping_shared::{DIMS, Numbers, balls, cameras, hills, samples_of_sa
 use glam::{DVec3, dvec3};
 use stratavox::gpu::Caps;
 use stratavox::offscreen::Renderer;
+use stratavox::picture::ColorSpace;
 use stratavox::scene::{Beside, Channel, Scene};
+use stratavox::technique::preclassified::preclassified;
 use stratavox::technique::{ClipPlane, Filter, Lattice, Mode, Role, Settings, Shading, Technique};
 use stratavox::transfer::{
     Cells, GradientTransfer, OpacityPoint, SecondDerivative, Shape, TransferFunction, Widget,
@@ -324,6 +326,58 @@ fn colours_with_an_alpha_are_the_same_whatever_is_left_out() {
         };
         let found = samples_of_same_pictures(&mut renderer, &scene);
         sums = [sums[0] + found[0], sums[1] + found[1]];
+    }
+    let part = sums[0] / sums[1];
+    assert!(part < 0.7, "hardly anything was left out: {part}");
+}
+
+#[test]
+fn classified_voxels_are_the_same_whatever_is_left_out() {
+    let mut numbers = Numbers(23);
+    let mut sums = [0.0; 2];
+    for has_holes in [false, true] {
+        let mut volume = towers(&mut numbers, false);
+        if has_holes {
+            let count = volume.voxels.len();
+            volume.validity = Some((0..count).map(|i| u8::from(i % 89 != 5)).collect());
+        }
+        let point = |(value, opacity)| OpacityPoint { value, opacity };
+        let mut function = hills(&mut numbers, volume.value_range);
+        function.opacity = [(225.0, 0.0), (240.0, 0.3), (250.0, 0.0)].map(point).into();
+        let length = volume.grid().smallest_spacing();
+        let made = preclassified(&volume, &function, length, ColorSpace::Linear).expect("volumes");
+        let [red, beside @ ..] = &made;
+        let beside: Vec<_> = beside.iter().collect();
+        let all = made.iter().collect();
+        let mut renderer =
+            Renderer::several(device_with(Caps::UNLIMITED), all).expect("a renderer");
+        // The last one stands among slices, for which shear-warp is not.
+        let cameras = cameras(&volume.grid());
+        for (technique, count) in [(Technique::Raycast, 3), (Technique::ShearWarp, 2)] {
+            for (nth, camera) in cameras.iter().take(count).enumerate() {
+                let mut settings = settings(&mut numbers, &volume);
+                if technique != Technique::Raycast {
+                    settings = Settings {
+                        technique,
+                        filter: Filter::Linear,
+                        lattice: Lattice::Ray,
+                        crop: settings.crop,
+                        conformance: nth == 0,
+                        ..Settings::default()
+                    };
+                }
+                let scene = Scene {
+                    volume: red,
+                    transfer: Some(&function),
+                    beside: Beside::Classified(&beside),
+                    camera,
+                    extent_pixels: [30, 26],
+                    settings: &settings,
+                };
+                let found = samples_of_same_pictures(&mut renderer, &scene);
+                sums = [sums[0] + found[0], sums[1] + found[1]];
+            }
+        }
     }
     let part = sums[0] / sums[1];
     assert!(part < 0.7, "hardly anything was left out: {part}");

@@ -319,7 +319,13 @@ pub(super) fn wanted(scene: &Scene) -> Option<(Skippable, Halo)> {
             if scene.settings.mode != Mode::Iso =>
         {
             let functions = opacities_of(scene).unwrap_or_default();
-            scene.settings.skippable_in_all(&functions)
+            let seen = functions.iter().map(|&(n, f)| (n, VisibleRanges::new(f)));
+            scene.settings.skippable_in_all(seen.collect())
+        }
+        // Depth, the last one.
+        (_, Beside::Classified(beside)) => {
+            let seen = (beside.len(), VisibleRanges::positive());
+            scene.settings.skippable_in_all(vec![seen])
         }
         (mix, _) => {
             let slope = scene.settings.slope(&scene.volume.grid());
