@@ -140,8 +140,13 @@ int main(int count, char **arguments) {
     check(sv_geometry_record_upload(tubes, cmd, &diagnostic));
 
     /* A fog that lets the tubes in it be seen; what the host has drawn hides what lies behind it. */
+    const sv_color_point white[] = {{0.0, {0.9, 0.9, 0.9}}};
     const sv_opacity_point opacities[] = {{0.0, 0.0}, {1.0, 0.05}};
-    const sv_transfer_function_desc fog = {.struct_size = sizeof fog, .opacities = opacities, .opacity_count = 2};
+    const sv_transfer_function_desc fog = {.struct_size = sizeof fog,
+                                           .colors = white,
+                                           .color_count = 1,
+                                           .opacities = opacities,
+                                           .opacity_count = 2};
     sv_transfer_function function = 0;
     check(sv_transfer_function_create(device, &fog, &function, &diagnostic));
     const sv_target_class over = {.struct_size = sizeof over, .color_format = FORMAT};

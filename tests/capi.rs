@@ -284,7 +284,7 @@ fn a_host_in_c_follows_lines_and_a_volume_ends_at_their_tubes() {
     let program = Program::new(&["examples/lines.c"], &[], false);
     let path = program.folder.path().join("lines.ppm");
     let told = printed(program.command().arg(&path));
-    // Around the axis and up, from wall to wall: each leaves by the roof and the floor, which are 8 turns apart.
+    // Around the axis and up: each comes in by the floor and leaves by the roof.
     let ends: Vec<_> = told.lines().collect();
     assert_eq!(ends.len(), 5, "{told}");
     assert!(

@@ -157,11 +157,11 @@ fn cones_are_what_the_cpu_sees_of_them_cut_by_the_hosts_planes() {
             let [x, y] = [i % 150, i / 150].map(|n| n as f64 + 0.5);
             let (origin, direction) = rays.at(x, y);
             // Which cone it is, and how it is seen.
-            let nearest = each.iter().filter_map(|cone| {
+            let mut nearest = each.iter().rev().filter_map(|cone| {
                 let hit = cone.hit(origin, direction)?;
                 (hit.distance == t).then(|| (cone.radii, hit.normal.dot(direction).abs()))
             });
-            let (radii, cosine) = nearest.last().unwrap_or_else(|| {
+            let (radii, cosine) = nearest.next().unwrap_or_else(|| {
                 cut += 1;
                 (each[0].radii, planes[0].0.dot(direction).abs())
             });
