@@ -211,7 +211,7 @@ with-second = if ! why=$$($(MAKE) --no-print-directory swiftshader 2>&1); then \
 second:
 	@$(with-second); export $(ON_SWIFTSHADER); \
 	RUST_TEST_THREADS=1 $(TEST) --no-fail-fast --test gpu --test embed $(SHOWN) \
-	    run:: limits:: flight:: formats:: levels:: pictures:: stale:: targets:: \
+	    run:: limits:: flight:: formats:: geometry:: levels:: pictures:: stale:: targets:: \
 	    && VK_DRIVER_FILES=$(BOTH) VK_ICD_FILENAMES=$(BOTH) $(TEST) --test cli $(SHOWN) two_drivers
 
 # $(call judged,name,arguments): the whole baseline by the program of the tests.

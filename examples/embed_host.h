@@ -200,6 +200,65 @@ static inline void host_texels(const host *h, uint8_t *texels) {
     vkUnmapMemory(h->device, h->memory[1]);
 }
 
+/* All that came before, and then all that comes. */
+static inline void host_barrier(VkCommandBuffer cmd, VkImage image, VkImageAspectFlags aspect, VkImageLayout from,
+                                VkImageLayout to) {
+    const VkImageMemoryBarrier2 barrier = {.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+                                           .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                           .srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT,
+                                           .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                           .dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
+                                           .oldLayout = from,
+                                           .newLayout = to,
+                                           .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                           .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                           .image = image,
+                                           .subresourceRange = {aspect, 0, 1, 0, 1}};
+    const VkDependencyInfo dependency = {.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                                         .imageMemoryBarrierCount = 1,
+                                         .pImageMemoryBarriers = &barrier};
+    vkCmdPipelineBarrier2(cmd, &dependency);
+}
+
+/* A depth buffer of the picture's size that shaders may read. */
+typedef struct host_depth {
+    VkImage image;
+    VkImageView view;
+    VkDeviceMemory memory;
+} host_depth;
+
+static inline host_depth host_make_depth(const host *h) {
+    host_depth d;
+    const VkImageCreateInfo image = {
+        .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+        .imageType = VK_IMAGE_TYPE_2D,
+        .format = VK_FORMAT_D32_SFLOAT,
+        .extent = {h->width, h->height, 1},
+        .mipLevels = 1,
+        .arrayLayers = 1,
+        .samples = VK_SAMPLE_COUNT_1_BIT,
+        .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                 VK_IMAGE_USAGE_TRANSFER_DST_BIT};
+    host_check(vkCreateImage(h->device, &image, NULL, &d.image) == VK_SUCCESS, "make a depth buffer");
+    VkMemoryRequirements wanted;
+    vkGetImageMemoryRequirements(h->device, d.image, &wanted);
+    d.memory = host_allocate(h, wanted, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+    host_check(vkBindImageMemory(h->device, d.image, d.memory, 0) == VK_SUCCESS, "bind memory");
+    const VkImageViewCreateInfo view = {.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+                                        .image = d.image,
+                                        .viewType = VK_IMAGE_VIEW_TYPE_2D,
+                                        .format = VK_FORMAT_D32_SFLOAT,
+                                        .subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 1}};
+    host_check(vkCreateImageView(h->device, &view, NULL, &d.view) == VK_SUCCESS, "make a view");
+    return d;
+}
+
+static inline void host_free_depth(const host *h, host_depth d) {
+    vkDestroyImageView(h->device, d.view, NULL);
+    vkDestroyImage(h->device, d.image, NULL);
+    vkFreeMemory(h->device, d.memory, NULL);
+}
+
 /* Destroys what host_open made. How many messages the validation layer had. */
 static inline unsigned host_close(host *h) {
     vkDestroyCommandPool(h->device, h->pool, NULL);

@@ -280,6 +280,64 @@ typedef uint32_t sv_camera_kind;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
+// Which way lines are followed from their seeds.
+enum sv_direction
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // Both: the seed lies inside of the line.
+    SV_DIRECTION_BOTH = 0,
+    // Along the velocity.
+    SV_DIRECTION_FORWARD = 1,
+    // Against it.
+    SV_DIRECTION_BACKWARD = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum sv_direction sv_direction;
+#else
+typedef uint32_t sv_direction;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// Why a line ends.
+enum sv_cause
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // It was not followed that way.
+    SV_CAUSE_NONE = 0,
+    // The box of the grid ends there.
+    SV_CAUSE_DOMAIN = 1,
+    // The ground. Not of fields of the host's.
+    SV_CAUSE_GROUND = 2,
+    // A voxel that it lies between has no data.
+    SV_CAUSE_NO_DATA = 3,
+    // A pole of the Earth. Not of fields of the host's.
+    SV_CAUSE_POLE = 4,
+    // It is a million times slower than the fast places of the field, or stays where it is.
+    SV_CAUSE_STAGNATION = 5,
+    // It came back to its seed.
+    SV_CAUSE_CLOSED = 6,
+    // `length`.
+    SV_CAUSE_LENGTH = 7,
+    // `duration`.
+    SV_CAUSE_TIME = 8,
+    // `most_vertices`.
+    SV_CAUSE_VERTICES = 9,
+    // It came too near to another line that is evenly spaced.
+    SV_CAUSE_CROWDED = 10,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum sv_cause sv_cause;
+#else
+typedef uint32_t sv_cause;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
 // What any function of Vulkan is cast to.
 typedef void (*sv_vk_function)(void);
 
@@ -428,8 +486,78 @@ typedef struct sv_transfer_function_desc {
 // A transfer function. 0 is a ramp of greys over the volume's range.
 typedef uint64_t sv_transfer_function;
 
-// Pictures of one volume in a host's frames. 0 is none.
-typedef uint64_t sv_renderer;
+// What is drawn into, as far as pipelines have to know.
+typedef struct sv_target_class {
+    // `sizeof(sv_target_class)`.
+    uint32_t struct_size;
+    // NULL.
+    const void *next;
+    // `VkFormat` of the one color target.
+    uint32_t color_format;
+    // Samples of each target, as `VkSampleCountFlagBits`. 0 is 1.
+    uint32_t samples;
+    // `VkFormat` of the depth attachment, or 0 where there is none.
+    uint32_t depth_format;
+    // Not 0: the same image is the stencil attachment too.
+    uint32_t has_stencil;
+    // Not 0: the larger of two depths is nearer.
+    uint32_t is_depth_reversed;
+    // Of `render_pass`, with the color target as its first color attachment.
+    uint32_t subpass;
+    // `VkRenderPass`, or 0 for dynamic rendering.
+    uint64_t render_pass;
+} sv_target_class;
+
+// The hull of two spheres: a piece of a tube, an arrow's head, a sphere where both ends are the same.
+typedef struct sv_round_cone {
+    // Middle of the first sphere, world.
+    double first[3];
+    // Of the second.
+    double second[3];
+    // World length, over 0.
+    double first_radius;
+    // Of the second.
+    double second_radius;
+    // Linear red, green and blue; it is lit from the eye.
+    float first_color[3];
+    // Of the second: colours go straight from one to the other.
+    float second_color[3];
+} sv_round_cone;
+
+// A triangle that is seen from both sides, in colours as they are.
+typedef struct sv_triangle {
+    // Corners, world.
+    double corners[3][3];
+    // Linear red, green and blue of each.
+    float colors[3][3];
+    // 0.
+    uint32_t reserved;
+} sv_triangle;
+
+// What geometry is made of and for.
+typedef struct sv_geometry_desc {
+    // `sizeof(sv_geometry_desc)`.
+    uint32_t struct_size;
+    // NULL.
+    const void *next;
+    // What is drawn into, with a depth attachment.
+    const struct sv_target_class *target;
+    // sv_color_space.
+    uint32_t color_space;
+    // Frames of the host that may be unfinished at once, at most 64. 0 is 1.
+    uint32_t frames_in_flight;
+    // They are copied before the call returns.
+    const struct sv_round_cone *cones;
+    // How many there are.
+    uint64_t cone_count;
+    // They are copied before the call returns.
+    const struct sv_triangle *triangles;
+    // How many there are.
+    uint64_t triangle_count;
+} sv_geometry_desc;
+
+// Round cones and triangles on a device. 0 is none.
+typedef uint64_t sv_geometry;
 
 // Where the eye is and what it sees, in the world. All zero: all of the volume from the front.
 typedef struct sv_camera {
@@ -472,6 +600,47 @@ typedef struct sv_frame_info {
     // 0.
     uint32_t reserved;
 } sv_frame_info;
+
+// A field of velocities, and where its stream lines begin.
+typedef struct sv_trace_desc {
+    // `sizeof(sv_trace_desc)`.
+    uint32_t struct_size;
+    // NULL.
+    const void *next;
+    // How many voxels there are along x, y and z: 1 or more of each.
+    uint32_t dims[3];
+    // sv_direction.
+    uint32_t direction;
+    // Three numbers a voxel, x fastest, then y, then z: along the axes of the world, world length per second; a voxel where one
+    // of them is not finite has no data. They are read before the call returns.
+    const float *velocities;
+    // How many numbers there are.
+    uint64_t velocity_count;
+    // As in sv_volume_desc. All zero: voxel space is the world.
+    double world_from_voxel[16];
+    // Three numbers each, world; or NULL: lines that are evenly spaced.
+    const double *seeds;
+    // How many seeds there are.
+    uint64_t seed_count;
+    // Of lines that are evenly spaced: their distance, world length. 0: a 24th of the diagonal of the box.
+    double spacing;
+    // No more lines that are evenly spaced than these. 0 is 2000.
+    uint32_t most_lines;
+    // How many vertices a line has at most, each way. 0 is 4000.
+    uint32_t most_vertices;
+    // How long a line is at most, each way, world length. 0: as long as it goes.
+    double length;
+    // For how long a line is followed, each way, in seconds. 0: as long as it goes.
+    double duration;
+    // What a step may be off by, in cells of the grid. 0 is 0.001.
+    double tolerance;
+} sv_trace_desc;
+
+// Lines that follow a field: in memory of the host's alone. 0 is none.
+typedef uint64_t sv_lines;
+
+// Pictures of one volume in a host's frames. 0 is none.
+typedef uint64_t sv_renderer;
 
 // The state of an image at one moment. All zero of `before`: what it holds is given up.
 // All zero of `after`: as rendering leaves it, in `VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL`.
@@ -745,28 +914,6 @@ typedef struct sv_plan {
     uint64_t bricks;
 } sv_plan;
 
-// What is drawn into, as far as pipelines have to know.
-typedef struct sv_target_class {
-    // `sizeof(sv_target_class)`.
-    uint32_t struct_size;
-    // NULL.
-    const void *next;
-    // `VkFormat` of the one color target.
-    uint32_t color_format;
-    // Samples of each target, as `VkSampleCountFlagBits`. 0 is 1.
-    uint32_t samples;
-    // `VkFormat` of the depth attachment, or 0 where there is none.
-    uint32_t depth_format;
-    // Not 0: the same image is the stencil attachment too.
-    uint32_t has_stencil;
-    // Not 0: the larger of two depths is nearer.
-    uint32_t is_depth_reversed;
-    // Of `render_pass`, with the color target as its first color attachment.
-    uint32_t subpass;
-    // `VkRenderPass`, or 0 for dynamic rendering.
-    uint64_t render_pass;
-} sv_target_class;
-
 // A depth buffer that rays read: 2D, one level, one layer, one sample, with `VK_IMAGE_USAGE_SAMPLED_BIT`.
 typedef struct sv_depth_image {
     // `VkImageView` of its depth aspect.
@@ -905,6 +1052,69 @@ sv_status sv_transfer_function_create(sv_device device,
 
 // Destroys it. Renderers that were made with it have a copy. Threads: any.
 sv_status sv_transfer_function_destroy(sv_transfer_function function, struct sv_diagnostic *diagnostic);
+
+// Makes buffers, pipelines and all else that draws will need. Threads: any.
+sv_status sv_geometry_create(sv_device device,
+                             const struct sv_geometry_desc *desc,
+                             sv_geometry *geometry,
+                             struct sv_diagnostic *diagnostic);
+
+// Records the upload, once. What it is staged in is freed by sv_device_retire, if sv_device_announce came before.
+//
+// `command_buffer` (`VkCommandBuffer`) is recording, outside rendering, and is submitted before what draws the geometry.
+// Threads: one at a time for one geometry.
+sv_status sv_geometry_record_upload(sv_geometry geometry,
+                                    void *command_buffer,
+                                    struct sv_diagnostic *diagnostic);
+
+// Draws all of it where it is not behind what the host has drawn so far, and writes its depth: volumes whose renderers read
+// that depth (`has_host_depth`) end there. Its camera is of SV_CAMERA_MATRICES. Bound pipeline, descriptor set 0, viewport and
+// scissor are ours afterwards.
+//
+// `command_buffer` is inside rendering to a target of the geometry's class, of so many pixels, after
+// sv_geometry_record_upload; depth may be written. Nothing unfinished was drawn with the same `frame` of `shot`.
+// Threads: one at a time for one geometry.
+sv_status sv_geometry_draw(sv_geometry geometry,
+                           void *command_buffer,
+                           const struct sv_frame_info *shot,
+                           uint32_t width,
+                           uint32_t height,
+                           struct sv_diagnostic *diagnostic);
+
+// Destroys the handle; what frames in flight use is freed by sv_device_retire. Threads: any.
+sv_status sv_geometry_destroy(sv_geometry geometry, struct sv_diagnostic *diagnostic);
+
+// Follows stream lines of a field: by steps no longer than a cell, in 64-bit floats, one line a seed in their order, by all
+// cores of the machine. Nothing is done on the device, which keeps the lines among its handles. Threads: any.
+sv_status sv_trace(sv_device device,
+                   const struct sv_trace_desc *desc,
+                   sv_lines *lines,
+                   struct sv_diagnostic *diagnostic);
+
+// How many lines there are, one a seed; one that begins where there is no velocity has no vertices. Threads: any.
+sv_status sv_lines_count(sv_lines lines, uint64_t *count, struct sv_diagnostic *diagnostic);
+
+// The places of the vertices of one line along the velocity, three doubles each. `count` is for how many there is room at
+// `positions`, and becomes how many there are; with NULL that alone is told. Threads: any.
+sv_status sv_lines_positions(sv_lines lines,
+                             uint64_t line,
+                             double *positions,
+                             uint64_t *count,
+                             struct sv_diagnostic *diagnostic);
+
+// The time since the seed, negative before it, and the speed at the vertices of one line: two doubles each. As
+// sv_lines_positions.
+sv_status sv_lines_values(sv_lines lines,
+                          uint64_t line,
+                          double *values,
+                          uint64_t *count,
+                          struct sv_diagnostic *diagnostic);
+
+// Why a line begins where it does, and why it ends: two numbers of sv_cause. Threads: any.
+sv_status sv_lines_cause(sv_lines lines, uint64_t line, uint32_t *causes, struct sv_diagnostic *diagnostic);
+
+// Forgets the lines. Threads: any.
+sv_status sv_lines_destroy(sv_lines lines, struct sv_diagnostic *diagnostic);
 
 // Begins a frame that is recorded in parts, and tells how many pieces it has: blocks of 64 x 64 pixels, smaller where
 // those are thought to take long, slices of half-angle slicing, and what a new function has to be found empty. What

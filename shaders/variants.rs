@@ -473,6 +473,10 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         &[constant("output", &["picture", "value"])],
     ),
     ("host_depth_copy", &[]),
+    ("round_cone_cover", &[]),
+    ("round_cone", &[]),
+    ("triangle_corner", &[]),
+    ("triangle", &[]),
     ("precompute_gradients", &[slot("layout", &["box", "stack"])]),
     ("merge", &[constant("operator", &["over", "under", "add"])]),
     (

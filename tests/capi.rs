@@ -277,6 +277,31 @@ fn the_host_in_c_draws_the_picture_of_the_host_in_rust() {
 }
 
 #[test]
+fn a_host_in_c_follows_lines_and_a_volume_ends_at_their_tubes() {
+    if !can_link() {
+        return;
+    }
+    let program = Program::new(&["examples/lines.c"], &[], false);
+    let path = program.folder.path().join("lines.ppm");
+    let told = printed(program.command().arg(&path));
+    // Around the axis and up: each comes in by the floor and leaves by the roof.
+    let ends: Vec<_> = told.lines().collect();
+    assert_eq!(ends.len(), 5, "{told}");
+    assert!(
+        ends.iter().all(|line| line.ends_with("causes 1 and 1")),
+        "{told}"
+    );
+    let found = fs::read(&path).unwrap();
+    let pixels = found["P6\n320 240\n255\n".len()..].as_chunks::<3>().0;
+    let is_tube = |[r, _, b]: &&[u8; 3]| r.abs_diff(*b) > 60 && (*r).max(*b) > 120;
+    let is_fog = |[r, g, b]: &&[u8; 3]| r.abs_diff(*g) < 12 && g.abs_diff(*b) < 16 && *g > 120;
+    let tubes = pixels.iter().filter(is_tube).count();
+    let fog = pixels.iter().filter(is_fog).count();
+    println!("{tubes} pixels of tubes, {fog} of the ball alone");
+    assert!(tubes > 4000 && fog > 500, "{tubes} and {fog}");
+}
+
+#[test]
 fn each_barrier_of_the_host_in_c_is_needed() {
     let mode = stratavox::gpu::Validation::default().mode().unwrap();
     if mode != Some(stratavox::gpu::ValidationMode::Synchronization) {
@@ -355,6 +380,7 @@ fn abuse_is_refused_in_words_and_breaks_nothing() {
         &[
             "tests/capi/abuse.c",
             "tests/capi/abuse_frames.c",
+            "tests/capi/abuse_geometry.c",
             "tests/capi/abuse_handles.c",
             "tests/capi/abuse_objects.c",
             "tests/capi/abuse_pictures.c",

@@ -11,7 +11,10 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::sync::Arc;
 use stratavox::camera::{Camera, DepthConvention};
-use stratavox::embed::{FrameInfo, HostDepthImage, Renderer, RendererDesc, Volume};
+use stratavox::embed::{
+    FrameInfo, Geometry, GeometryDesc, HostDepthImage, Renderer, RendererDesc, Volume,
+};
+use stratavox::geometry;
 use stratavox::gpu::{Caps, DepthClass, Load, TargetClass};
 use stratavox::technique::{Settings, Technique};
 
@@ -53,6 +56,65 @@ fn taken(what: impl FnOnce()) -> u64 {
     let before = TAKEN.get();
     what();
     TAKEN.get() - before
+}
+
+/// What [`Geometry::draw`] takes, of cones and of triangles.
+#[test]
+fn geometry_is_drawn_without_the_heap() {
+    let host = Host::new();
+    let stage = Stage::new(Settings::default());
+    let [eye, ..] = eyes(&stage);
+    let (camera, depth) = Camera::from_matrices(&eye.view, &eye.clip, eye.nearer).unwrap();
+    let mut shapes = geometry::Geometry::default();
+    let place = stage.grid.center();
+    shapes
+        .cones
+        .add_line([-3.0, 0.0, 3.0].map(|x| geometry::Vertex {
+            place: place + glam::DVec3::splat(x),
+            radius: 1.0,
+            color: [0.5; 3],
+        }));
+    let corner = |x: f64, y: f64| geometry::Corner {
+        place: place + glam::dvec3(x, y, 0.0),
+        color: [0.5; 3],
+    };
+    let corners = [corner(0.0, 0.0), corner(5.0, 0.0), corner(0.0, 5.0)];
+    shapes.triangles.add(&corners, [[0, 1, 2]]);
+    let desc = GeometryDesc {
+        target: TargetClass {
+            depth: Some(DepthClass {
+                format: vk::Format::D32_SFLOAT,
+                has_stencil: false,
+                is_reversed: depth.nearer == DepthConvention::Reversed,
+            }),
+            ..FORMAT.into()
+        },
+        color_space: stage.settings.color_space,
+        frames_in_flight: 1,
+    };
+    let extent = stage.extent;
+    let mut made = Geometry::new(host.gpu(), &shapes, desc).unwrap();
+    let image = HostImage::new(&host, FORMAT, extent);
+    let nothing = vec![1.0; (extent[0] * extent[1]) as usize];
+    let buffer = DepthImage::new(&host, extent, &nothing, ATTACHED);
+    let shot = FrameInfo {
+        frame: 0,
+        camera: &camera,
+        depth: Some(depth),
+    };
+    for frame in 0..2 {
+        // SAFETY: recorded in order; `run` waits.
+        host.run(|cmd| unsafe {
+            if frame == 0 {
+                made.record_upload(cmd).unwrap();
+            }
+            image.make_target(cmd);
+            host.begin_rendering_before(cmd, image.view, extent, [0.0; 4], Some(&buffer));
+            let taken = taken(|| made.draw(cmd, &shot, extent).unwrap());
+            assert!(frame == 0 || taken == 0, "{taken} times");
+            host.device.cmd_end_rendering(cmd);
+        });
+    }
 }
 
 /// Both frames in flight, and then both again: by level A with depth and picks where the mode has them, and by level B.

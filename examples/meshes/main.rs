@@ -1,4 +1,5 @@
-//! A volume among a host's spinning meshes: a ring that goes through it and around it, each hiding what lies behind it.
+//! A volume among a host's spinning meshes: a ring that goes through it and around it, and stream lines of a field of the
+//! host's own around the ring's axis, each hiding what lies behind it.
 //!
 //! ```sh
 //! cargo run --release --example meshes -- folder [rays|slices] [frames]
@@ -9,13 +10,17 @@
 mod host;
 
 use glam::dcamera::rh::{proj::vulkan, view::look_at_mat4};
-use glam::{DMat4, DQuat, DVec3, dvec3};
+use glam::{DMat3, DMat4, DQuat, DVec3, dvec3};
 use host::{Corner, DEPTH_FORMAT, DepthFor, FORMAT, Host, QUEUE_FAMILY};
 use std::f64::consts::TAU;
 use std::{env, error::Error, path::Path, sync::Arc};
 use stratavox::camera::{Camera, DepthConvention};
 use stratavox::embed::{FrameInfo, HostDepthImage, Renderer, RendererDesc, SliceBlending, Volume};
+use stratavox::embed::{Geometry, GeometryDesc};
+use stratavox::flow::{Absence, Direction, Limits as LineLimits, Line, VectorField, stream_lines};
+use stratavox::geometry::{RoundCones, Vertex};
 use stratavox::gpu::{API_VERSION, Caps, DepthClass, Features, Gpu, HostDevice, TargetClass};
+use stratavox::picture::ColorSpace;
 use stratavox::technique::{Lattice, Settings, Shading, Technique};
 use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
 use stratavox::volume::{self, Limits, TimeComponent, phantom};
@@ -75,16 +80,23 @@ unsafe fn film(
         let gpu = Gpu::from_host(handles(host))?;
         let mut volume = Volume::new(&gpu, &voxels, &settings)?;
         host.frame(|cmd| Ok(volume.record_upload(&gpu, cmd)?))?;
+        let target = TargetClass {
+            depth: Some(DepthClass {
+                format: DEPTH_FORMAT,
+                has_stencil: false,
+                is_reversed: true,
+            }),
+            ..FORMAT.into()
+        };
+        let desc = GeometryDesc {
+            target,
+            color_space: ColorSpace::Linear,
+            frames_in_flight: 1,
+        };
+        let mut lines = Geometry::new(&gpu, &lines(Whirl { center, size }).into(), desc)?;
         let class = RendererDesc {
             settings,
-            target: TargetClass {
-                depth: Some(DepthClass {
-                    format: DEPTH_FORMAT,
-                    has_stencil: false,
-                    is_reversed: true,
-                }),
-                ..FORMAT.into()
-            },
+            target,
             frames_in_flight: 1,
             host_depth: true,
             gives_depth: false,
@@ -111,9 +123,13 @@ unsafe fn film(
             };
             let corners = ring(clip * view, center, size, part);
             host.frame(|cmd| {
+                if frame == 0 {
+                    lines.record_upload(cmd)?;
+                }
                 host.depth_barrier(cmd, DepthFor::Nothing, DepthFor::Rendering);
                 host.begin_rendering(cmd, Some(BACKGROUND));
                 host.draw(cmd, &corners);
+                lines.draw(cmd, &shot, EXTENT)?;
                 host.device.cmd_end_rendering(cmd);
                 // The volume is seen as far as the meshes.
                 host.depth_barrier(cmd, DepthFor::Rendering, DepthFor::Reading);
@@ -152,6 +168,40 @@ fn function() -> TransferFunction {
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
     }
+}
+
+/// A field of the host's own: a whirl around a vertical axis, in a ball as large as the volume.
+struct Whirl {
+    center: DVec3,
+    size: f64,
+}
+
+impl VectorField for Whirl {
+    fn velocity(&self, _: f64, place: DVec3) -> Result<DVec3, Absence> {
+        let from = place - self.center;
+        let turning = DVec3::Z.cross(from) + 0.06 * self.size * DVec3::Z;
+        let is_inside = from.length() < 0.5 * self.size;
+        is_inside.then_some(turning).ok_or(Absence::Domain)
+    }
+
+    fn cells_from_world(&self) -> DMat3 {
+        DMat3::from_diagonal(DVec3::splat(100.0 / self.size))
+    }
+}
+
+/// Tubes along its lines through some places.
+fn lines(field: Whirl) -> RoundCones {
+    let seeds = [0.17, 0.25, 0.33, 0.41].map(|part| field.center + part * field.size * DVec3::X);
+    let followed = stream_lines(&field, 0.0, &seeds, Direction::Both, &LineLimits::default());
+    let mut cones = RoundCones::default();
+    for piece in followed.iter().flat_map(Line::pieces) {
+        cones.add_line(piece.iter().map(|vertex| Vertex {
+            place: vertex.place,
+            radius: 0.006 * field.size,
+            color: [0.1, 0.6, 0.3],
+        }));
+    }
+    cones
 }
 
 /// Triangles of a ring that turns around an axis through it, in clip space.

@@ -60,19 +60,38 @@ pub(super) unsafe fn camera(
         0 => Ok((fitted(grid, extent)?, None)),
         1 => Ok((look_at(&c)?, None)),
         2 => {
-            let nearer = match c.is_reversed {
-                0 => DepthConvention::Standard,
-                _ => DepthConvention::Reversed,
-            };
-            let [view, clip] = [c.view_from_world, c.clip_from_view];
-            let [view, clip] = [view, clip].map(|columns| DMat4::from_cols_array(&columns));
-            let (camera, depth) = Camera::from_matrices(&view, &clip, nearer)?;
+            let (camera, depth) = of_matrices(&c)?;
             Ok((camera, Some(depth)))
         }
         kind => Err(Failure::argument(format!(
             "sv_camera.kind: wanted 0 to 2, found {kind}"
         ))),
     }
+}
+
+/// The camera of matrices, and what its depth buffer says.
+///
+/// # Safety
+/// As [`structure::read`].
+pub(super) unsafe fn matrices(pointer: *const sv_camera) -> Result<(Camera, HostDepth), Failure> {
+    // SAFETY: the caller's promise.
+    let c = unsafe { structure::read_or_zero(pointer)? };
+    match c.kind {
+        2 => of_matrices(&c),
+        kind => Err(Failure::argument(format!(
+            "sv_camera.kind: geometry wants SV_CAMERA_MATRICES (2), found {kind}"
+        ))),
+    }
+}
+
+fn of_matrices(c: &sv_camera) -> Result<(Camera, HostDepth), Failure> {
+    let nearer = match c.is_reversed {
+        0 => DepthConvention::Standard,
+        _ => DepthConvention::Reversed,
+    };
+    let [view, clip] = [c.view_from_world, c.clip_from_view];
+    let [view, clip] = [view, clip].map(|columns| DMat4::from_cols_array(&columns));
+    Ok(Camera::from_matrices(&view, &clip, nearer)?)
 }
 
 fn fitted(grid: &Grid, extent: [u32; 2]) -> Result<Camera, Failure> {

@@ -103,6 +103,7 @@ impl From<embed::Error> for Failure {
             | Error::TargetState { .. }
             | Error::Update { .. }
             | Error::NoFrame { .. }
+            | Error::Geometry { .. }
             | Error::HostDepth { .. }
             | Error::NoPixel { .. } => SV_E_ARGUMENT,
         };

@@ -24,7 +24,7 @@ pub(super) trait Kind: Any + Send + Sync {
 }
 
 /// By their numbers.
-const NAMES: [&str; 7] = [
+const NAMES: [&str; 9] = [
     "",
     "sv_device",
     "sv_volume",
@@ -32,6 +32,8 @@ const NAMES: [&str; 7] = [
     "sv_renderer",
     "sv_submitter",
     "sv_update",
+    "sv_lines",
+    "sv_geometry",
 ];
 
 const BITS: u32 = 20;

@@ -20,9 +20,11 @@ mod camera;
 mod device;
 mod failures;
 mod function;
+mod geometry;
 mod handles;
 mod host;
 mod images;
+mod lines;
 mod parts;
 mod pick;
 mod plan;
@@ -47,8 +49,16 @@ pub use function::{
     sv_color_point, sv_opacity_point, sv_transfer_function, sv_transfer_function_create,
     sv_transfer_function_desc, sv_transfer_function_destroy,
 };
+pub use geometry::{
+    sv_geometry, sv_geometry_create, sv_geometry_desc, sv_geometry_destroy, sv_geometry_draw,
+    sv_geometry_record_upload, sv_round_cone, sv_triangle,
+};
 pub use host::{sv_feature, sv_get_instance_proc_addr, sv_host_device, sv_limits, sv_vk_function};
 pub use images::{sv_depth_image, sv_image_state, sv_target, sv_target_class};
+pub use lines::{
+    sv_cause, sv_direction, sv_lines, sv_lines_cause, sv_lines_count, sv_lines_destroy,
+    sv_lines_positions, sv_lines_values, sv_trace, sv_trace_desc,
+};
 pub use parts::{
     sv_pacing, sv_renderer_begin_parts, sv_renderer_record_part_into, sv_submitter_submit_in_parts,
     sv_submitter_update_in_parts, sv_submitter_upload_in_parts,

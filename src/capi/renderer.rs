@@ -253,7 +253,7 @@ unsafe fn made(device: &Device, desc: &sv_renderer_desc) -> Result<Inner, Failur
 }
 
 /// A size that the device can draw to.
-fn extent(device: &Device, extent: [u32; 2]) -> Result<[u32; 2], Failure> {
+pub(super) fn extent(device: &Device, extent: [u32; 2]) -> Result<[u32; 2], Failure> {
     let limits = device.gpu.limits();
     let most = [0, 1].map(|k| {
         let of_image = limits.max_image_dimension_2d;

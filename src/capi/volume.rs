@@ -157,7 +157,7 @@ pub unsafe extern "C" fn sv_volume_create(
             let range = [0.0, 1.0];
             // SAFETY: as above.
             let settings = unsafe { settings(desc.settings, range)? };
-            let affine = affine(&desc.world_from_voxel)?;
+            let affine = affine("sv_volume_desc.world_from_voxel", &desc.world_from_voxel)?;
             // SAFETY: as many bytes as the caller says, which are as many as there are voxels.
             let bytes = unsafe { std::slice::from_raw_parts(desc.voxels.cast::<u8>(), bytes) };
             let voxels = voxels(kind, bytes)?;
@@ -327,8 +327,7 @@ fn value_range(desc: &sv_volume_desc, found: [f64; 2]) -> Result<[f64; 2], Failu
 }
 
 /// An invertible transform from columns; all zero is the identity.
-fn affine(columns: &[f64; 16]) -> Result<DAffine3, Failure> {
-    let name = "sv_volume_desc.world_from_voxel";
+pub(super) fn affine(name: &str, columns: &[f64; 16]) -> Result<DAffine3, Failure> {
     if columns == &[0.0; 16] {
         return Ok(DAffine3::IDENTITY);
     }

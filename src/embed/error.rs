@@ -28,14 +28,26 @@ pub enum Error {
         /// What was asked for.
         wanted: String,
     },
-    /// The voxels are not there yet.
-    #[error(
-        "the volume has not been uploaded: `Volume::record_upload` comes before the first frame"
-    )]
+    /// The voxels, or the shapes of geometry, are not there yet.
+    #[error("not uploaded: `record_upload` comes before the first frame that shows it")]
     NotUploaded,
-    /// The voxels have been recorded once.
-    #[error("the volume has been uploaded already: make another one for other voxels")]
+    /// The voxels, or the shapes of geometry, have been recorded once.
+    #[error("uploaded already: make another one for other voxels or shapes")]
     Uploaded,
+    /// A vertex that is none.
+    #[error("vertex {number} of {shapes}: its {what}: wanted {wanted}, found {found}")]
+    Geometry {
+        /// Round cones or triangles.
+        shapes: &'static str,
+        /// The vertex, in the order in which they were added.
+        number: usize,
+        /// What of it.
+        what: &'static str,
+        /// What would do.
+        wanted: &'static str,
+        /// What was given.
+        found: String,
+    },
     /// A target that loses what it holds.
     #[error("a target in layout {found:?}: wanted {wanted}")]
     TargetState {

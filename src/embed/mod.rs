@@ -15,6 +15,9 @@
 //! [`Gpu::retire`](crate::gpu::Gpu::retire) when the device has done them, and gives a number of a frame in flight
 //! ([`FrameInfo::frame`]) to no second frame before the first is done.
 //!
+//! Lines, arrows and points that a host has as round cones, and triangles, it may have drawn into its own picture and depth by
+//! [`Geometry`].
+//!
 //! What a host has drawn hides the volume behind it ([`RendererDesc::host_depth`]): its depth buffer is read as a texture. Its own
 //! depth a picture gives back by [`Renderer::draw_depth`] and [`Renderer::record_pick`] ([`RendererDesc::gives_depth`], [`RendererDesc::picks`]).
 //!
@@ -36,6 +39,7 @@
 mod error;
 mod frame;
 mod function;
+mod geometry;
 mod in_parts;
 mod parts;
 mod pass;
@@ -53,6 +57,7 @@ mod upload;
 mod volume;
 
 pub use error::Error;
+pub use geometry::{Geometry, GeometryDesc};
 pub use in_parts::Pacing;
 pub use pick::Pick;
 pub use renderer::Renderer;

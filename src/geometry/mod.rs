@@ -136,6 +136,19 @@ impl RoundCones {
         self.segments.is_empty()
     }
 
+    /// All ends.
+    pub(crate) fn vertices(&self) -> &[Vertex] {
+        &self.vertices
+    }
+
+    /// Which of them each cone is between: two numbers a cone.
+    pub(crate) fn numbers(&self) -> Vec<u32> {
+        self.segments
+            .iter()
+            .flat_map(|segment| segment.ends)
+            .collect()
+    }
+
     /// The cone of a segment, and the colours of its ends.
     fn cone(&self, segment: usize) -> (RoundCone, [[f32; 3]; 2]) {
         let ends = self.segments[segment]

@@ -56,6 +56,16 @@ impl Triangles {
         self.triangles.is_empty()
     }
 
+    /// All corners.
+    pub(crate) fn all_corners(&self) -> &[Corner] {
+        &self.corners
+    }
+
+    /// Which of them each triangle is between: three numbers a triangle.
+    pub(crate) fn numbers(&self) -> &[u32] {
+        self.triangles.as_flattened()
+    }
+
     /// The corners of a triangle.
     pub(super) fn corners(&self, triangle: usize) -> [Corner; 3] {
         self.triangles[triangle].map(|i| self.corners[i as usize])

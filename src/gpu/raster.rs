@@ -77,6 +77,8 @@ pub enum DepthUse {
     Tested,
     /// Draws no color, and writes what is not behind it.
     Written,
+    /// Draws what is nearer, and writes its depth: of two that are equally near the first stays.
+    Opaque,
 }
 
 impl From<vk::Format> for TargetClass {
@@ -171,7 +173,7 @@ impl RasterPipeline {
             .rasterization_samples(desc.target.samples);
         let attachments = [match desc.depth {
             DepthUse::Written => vk::PipelineColorBlendAttachmentState::default(),
-            DepthUse::Ignored | DepthUse::Tested => desc.blend.attachment(),
+            DepthUse::Ignored | DepthUse::Tested | DepthUse::Opaque => desc.blend.attachment(),
         }];
         let depth = desc.depth.state(desc.target.depth);
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&attachments);
@@ -300,7 +302,7 @@ fn check_formats(gpu: &Gpu, desc: &RasterDesc<'_>) -> Result<(), Error> {
         (Some(depth), _) if !gpu.format_features(depth.format).depth => {
             lacks(depth.format, "depth attachment")
         }
-        (None, DepthUse::Tested | DepthUse::Written) => Err(Error::Argument {
+        (None, DepthUse::Tested | DepthUse::Written | DepthUse::Opaque) => Err(Error::Argument {
             doing: doing(),
             wanted: "a target with a depth attachment".into(),
             found: "none".into(),
@@ -330,16 +332,18 @@ impl TargetClass {
 }
 
 impl DepthUse {
-    /// Nearest wins, and so does what has the same depth.
+    /// Nearest wins, and so does what has the same depth, but for what is opaque.
     fn state(self, class: Option<DepthClass>) -> vk::PipelineDepthStencilStateCreateInfo<'static> {
         let is_reversed = class.is_some_and(|class| class.is_reversed);
-        let nearer = match is_reversed {
-            true => vk::CompareOp::GREATER_OR_EQUAL,
-            false => vk::CompareOp::LESS_OR_EQUAL,
+        let nearer = match (is_reversed, self) {
+            (true, Self::Opaque) => vk::CompareOp::GREATER,
+            (false, Self::Opaque) => vk::CompareOp::LESS,
+            (true, _) => vk::CompareOp::GREATER_OR_EQUAL,
+            (false, _) => vk::CompareOp::LESS_OR_EQUAL,
         };
         vk::PipelineDepthStencilStateCreateInfo::default()
             .depth_test_enable(self != Self::Ignored)
-            .depth_write_enable(self == Self::Written)
+            .depth_write_enable(matches!(self, Self::Written | Self::Opaque))
             .depth_compare_op(nearer)
     }
 }

@@ -10,7 +10,7 @@ use glam::DVec3;
 /// Clip space from the centred world, as rows, from the rays themselves: with w the depth and d the ray
 /// direction of depth 1, pixel x of a point p is where (p/w - d) . dx / |dx|^2 finds it. Depth is 1/2
 /// everywhere: w > 0 alone clips.
-pub(super) fn clip_rows(rays: &Rays, [width, height]: [u32; 2]) -> [[f32; 4]; 4] {
+pub(crate) fn clip_rows(rays: &Rays, [width, height]: [u32; 2]) -> [[f32; 4]; 4] {
     let is_perspective = rays.origin_dx == DVec3::ZERO;
     let row = |dx_origin: DVec3, dx_direction: DVec3, pixels: u32| {
         // A point's pixel coordinate times w is dot(slope, p - origin) + at_origin.

@@ -79,6 +79,7 @@ mod stack_axis;
 pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
 #[doc(hidden)]
 pub use alike_cells::AlikeCells;
+pub(crate) use clip_rows::clip_rows;
 pub use error::Error;
 pub use filter_by::FilterBy;
 pub use frame::View;

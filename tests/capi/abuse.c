@@ -160,6 +160,7 @@ int main(void) {
     abuse_objects();
     abuse_pictures();
     abuse_frames();
+    abuse_geometry();
     device_loss();
     threads();
     draw(after);

@@ -58,6 +58,8 @@ void abuse_structures(void);
 void abuse_objects(void);
 void abuse_pictures(void);
 void abuse_frames(void);
+/* Fields and shapes that are none. */
+void abuse_geometry(void);
 
 /* Structures as they should be. */
 

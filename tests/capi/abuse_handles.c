@@ -6,7 +6,7 @@ static sv_status with_renderer(sv_renderer_desc desc) {
 }
 
 typedef sv_status (*by_handle)(uint64_t);
-enum { DEVICE = 1, VOLUME, FUNCTION, RENDERER, SUBMITTER, UPDATE };
+enum { DEVICE = 1, VOLUME, FUNCTION, RENDERER, SUBMITTER, UPDATE, LINES, GEOMETRY, KINDS };
 
 static sv_status h_announce(uint64_t x) { return sv_device_announce(x, 0, &diagnostic); }
 static sv_status h_retire(uint64_t x) { return sv_device_retire(x, 0, &diagnostic); }
@@ -120,6 +120,7 @@ static sv_status h_upload_by(uint64_t x) {
     return sv_submitter_upload(x, fresh, 0, &s, &diagnostic);
 }
 static uint64_t left_over;
+static const float STILL[3];
 static uint32_t is_over;
 static sv_status h_upload_part(uint64_t x) { return sv_volume_record_upload_part(x, cmd, 1, &left_over, &diagnostic); }
 static sv_status h_update_part_into(uint64_t x) {
@@ -142,6 +143,27 @@ static sv_status h_update_parts(uint64_t x) { return update_by(x, volume, staged
 static sv_status h_update_parts_into(uint64_t x) { return update_by(submitter, x, staged); }
 static sv_status h_update_parts_of(uint64_t x) { return update_by(submitter, volume, x); }
 static sv_status h_submitter_destroy(uint64_t x) { return sv_submitter_destroy(x, &diagnostic); }
+
+static sv_status h_trace(uint64_t x) {
+    const sv_trace_desc desc = {.struct_size = sizeof desc, .dims = {1, 1, 1}, .velocity_count = 3, .velocities = STILL};
+    return sv_trace(x, &desc, &made_handle, &diagnostic);
+}
+static sv_status h_lines_count(uint64_t x) { return sv_lines_count(x, &left_over, &diagnostic); }
+static sv_status h_positions(uint64_t x) { return sv_lines_positions(x, 0, NULL, &left_over, &diagnostic); }
+static sv_status h_values(uint64_t x) { return sv_lines_values(x, 0, NULL, &left_over, &diagnostic); }
+static sv_status h_cause(uint64_t x) {
+    uint32_t causes[2];
+    return sv_lines_cause(x, 0, causes, &diagnostic);
+}
+static sv_status h_lines_destroy(uint64_t x) { return sv_lines_destroy(x, &diagnostic); }
+static const sv_target_class WITH_DEPTH = {.struct_size = sizeof(sv_target_class),
+                                           .color_format = FORMAT,
+                                           .depth_format = VK_FORMAT_D32_SFLOAT};
+static const sv_geometry_desc NO_SHAPE = {.struct_size = sizeof(sv_geometry_desc), .target = &WITH_DEPTH};
+static sv_status h_geometry_create(uint64_t x) { return sv_geometry_create(x, &NO_SHAPE, &made_handle, &diagnostic); }
+static sv_status h_geometry_upload(uint64_t x) { return sv_geometry_record_upload(x, cmd, &diagnostic); }
+static sv_status h_geometry_draw(uint64_t x) { return sv_geometry_draw(x, cmd, &SHOT, WIDTH, HEIGHT, &diagnostic); }
+static sv_status h_geometry_destroy(uint64_t x) { return sv_geometry_destroy(x, &diagnostic); }
 
 /* `is_optional`: 0 is no error there. */
 static const struct {
@@ -201,11 +223,21 @@ static const struct {
     {"sv_submitter_submit", h_submit, SUBMITTER, 0},
     {"sv_submitter_upload", h_upload_by, SUBMITTER, 0},
     {"sv_submitter_destroy", h_submitter_destroy, SUBMITTER, 0},
+    {"sv_trace", h_trace, DEVICE, 0},
+    {"sv_lines_count", h_lines_count, LINES, 0},
+    {"sv_lines_positions", h_positions, LINES, 0},
+    {"sv_lines_values", h_values, LINES, 0},
+    {"sv_lines_cause", h_cause, LINES, 0},
+    {"sv_lines_destroy", h_lines_destroy, LINES, 0},
+    {"sv_geometry_create", h_geometry_create, DEVICE, 0},
+    {"sv_geometry_record_upload", h_geometry_upload, GEOMETRY, 0},
+    {"sv_geometry_draw", h_geometry_draw, GEOMETRY, 0},
+    {"sv_geometry_destroy", h_geometry_destroy, GEOMETRY, 0},
 };
 
 void abuse_handles(void) {
     /* Of each kind one that is gone, and whose place is taken by another one. */
-    uint64_t stale[7] = {0};
+    uint64_t stale[KINDS] = {0};
     const sv_volume_desc desc = volume_desc();
     const sv_transfer_function_desc points = {.struct_size = sizeof points};
     const sv_renderer_desc wanted = renderer_desc();
@@ -224,7 +256,16 @@ void abuse_handles(void) {
     const sv_update_desc update = update_desc();
     GOOD(sv_volume_stage_update(volume, &update, &stale[UPDATE], &diagnostic));
     GOOD(sv_update_destroy(stale[UPDATE], &diagnostic));
-    const uint64_t live[] = {0, device, volume, function, renderer, submitter, staged};
+    const sv_trace_desc still = {.struct_size = sizeof still, .dims = {1, 1, 1}, .velocity_count = 3, .velocities = STILL};
+    sv_lines lines = 0;
+    GOOD(sv_trace(device, &still, &stale[LINES], &diagnostic));
+    GOOD(sv_lines_destroy(stale[LINES], &diagnostic));
+    GOOD(sv_trace(device, &still, &lines, &diagnostic));
+    sv_geometry geometry = 0;
+    GOOD(sv_geometry_create(device, &NO_SHAPE, &stale[GEOMETRY], &diagnostic));
+    GOOD(sv_geometry_destroy(stale[GEOMETRY], &diagnostic));
+    GOOD(sv_geometry_create(device, &NO_SHAPE, &geometry, &diagnostic));
+    const uint64_t live[KINDS] = {0, device, volume, function, renderer, submitter, staged, lines, geometry};
     for (size_t k = 0; k < sizeof BY_HANDLE / sizeof *BY_HANDLE; ++k) {
         const int kind = BY_HANDLE[k].kind;
         const by_handle call = BY_HANDLE[k].call;
@@ -239,7 +280,7 @@ void abuse_handles(void) {
         bad(call(live[kind] + 1000), SV_E_ARGUMENT, name);
         bad(call(live[kind] + ((uint64_t)77 << 40)), SV_E_ARGUMENT, name);
         bad(call(live[kind] ^ ((uint64_t)15 << 60)), SV_E_ARGUMENT, name);
-        for (int other = 1; other < 7; ++other)
+        for (int other = 1; other < KINDS; ++other)
             if (other != kind) bad(call(live[other]), SV_E_ARGUMENT, name);
     }
     /* Of another device. */

@@ -53,6 +53,8 @@ static sv_status s_pacing(void *x) {
     uint32_t done;
     return sv_submitter_submit_in_parts(submitter, renderer, &SHOT, &target, &s, x, &done, &diagnostic);
 }
+static sv_status s_trace(void *x) { return sv_trace(device, x, &made_handle, &diagnostic); }
+static sv_status s_geometry(void *x) { return sv_geometry_create(device, x, &made_handle, &diagnostic); }
 static sv_status s_checked(void *x) {
     uint64_t count = 0;
     return sv_check_device(x, NULL, &count, &diagnostic);
@@ -79,6 +81,8 @@ static const struct {
     {"sv_plan", s_plan, sizeof(sv_plan), 0, 1},
     {"sv_volume_desc, planned", s_planned, sizeof(sv_volume_desc), 0, 0},
     {"sv_update_desc", s_update, sizeof(sv_update_desc), 0, 0},
+    {"sv_trace_desc", s_trace, sizeof(sv_trace_desc), 0, 0},
+    {"sv_geometry_desc", s_geometry, sizeof(sv_geometry_desc), 0, 0},
     {"sv_pacing", s_pacing, sizeof(sv_pacing), 1, 0},
     {"sv_host_device, checked", s_checked, sizeof(sv_host_device), 0, 0},
     {"sv_submission", s_submission, sizeof(sv_submission), 0, 0},

@@ -57,23 +57,6 @@ sv_target whole_target(void) {
     return target;
 }
 
-void image_barrier(VkCommandBuffer cmd, VkImage image, VkImageAspectFlags aspect, VkImageLayout from,
-                          VkImageLayout to) {
-    const VkImageMemoryBarrier2 barrier = {.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-                                           .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                           .srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT,
-                                           .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                           .dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
-                                           .oldLayout = from,
-                                           .newLayout = to,
-                                           .image = image,
-                                           .subresourceRange = {aspect, 0, 1, 0, 1}};
-    const VkDependencyInfo dependency = {.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                                         .imageMemoryBarrierCount = 1,
-                                         .pImageMemoryBarriers = &barrier};
-    vkCmdPipelineBarrier2(cmd, &dependency);
-}
-
 /* The host's rendering to its image, and to a depth buffer that is cleared, where there is one. */
 void begin_rendering(VkCommandBuffer cmd, VkImageView depth, float depth_value) {
     const VkRenderingAttachmentInfo color = {.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
@@ -98,7 +81,7 @@ void begin_rendering(VkCommandBuffer cmd, VkImageView depth, float depth_value) 
 }
 
 void fetch(VkCommandBuffer cmd, uint8_t *texels) {
-    image_barrier(cmd, h.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+    host_barrier(cmd, h.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                   VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
     host_fetch(&h, cmd);
     host_submit_and_wait(&h, cmd);
@@ -138,7 +121,7 @@ void draw_a(sv_renderer renderer, const sv_camera *camera, uint8_t *texels) {
     const sv_frame_info shot = {.struct_size = sizeof shot, .camera = camera, .frame = 1};
     VkCommandBuffer cmd = host_begin(&h);
     CHECK(sv_renderer_record(renderer, cmd, &shot, &diagnostic));
-    image_barrier(cmd, h.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
+    host_barrier(cmd, h.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
                   VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
     begin_rendering(cmd, VK_NULL_HANDLE, 0.0f);
     CHECK(sv_renderer_draw(renderer, cmd, 1, &diagnostic));

@@ -22,7 +22,6 @@ void check(sv_status status, const char *what);
 /* Says it, and counts what is wrong. */
 void expect(int is_right, const char *what);
 
-void image_barrier(VkCommandBuffer cmd, VkImage image, VkImageAspectFlags aspect, VkImageLayout from, VkImageLayout to);
 /* The host's rendering to its image, and to a depth buffer that is cleared, where there is one. */
 void begin_rendering(VkCommandBuffer cmd, VkImageView depth, float depth_value);
 /* Ends and runs the command buffer: what was drawn. */

@@ -14,46 +14,13 @@ static sv_camera matrices(double distance, int is_reversed) {
     return camera;
 }
 
-/* A depth buffer of the host's, cleared to one depth. */
-typedef struct depth_image {
-    VkImage image;
-    VkImageView view;
-    VkDeviceMemory memory;
-} depth_image;
-
-static depth_image make_depth(void) {
-    depth_image d;
-    const VkImageCreateInfo image = {
-        .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
-        .imageType = VK_IMAGE_TYPE_2D,
-        .format = VK_FORMAT_D32_SFLOAT,
-        .extent = {WIDTH, HEIGHT, 1},
-        .mipLevels = 1,
-        .arrayLayers = 1,
-        .samples = VK_SAMPLE_COUNT_1_BIT,
-        .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
-                 VK_IMAGE_USAGE_TRANSFER_DST_BIT};
-    vkCreateImage(h.device, &image, NULL, &d.image);
-    VkMemoryRequirements wanted;
-    vkGetImageMemoryRequirements(h.device, d.image, &wanted);
-    d.memory = host_allocate(&h, wanted, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
-    vkBindImageMemory(h.device, d.image, d.memory, 0);
-    const VkImageViewCreateInfo view = {.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-                                        .image = d.image,
-                                        .viewType = VK_IMAGE_VIEW_TYPE_2D,
-                                        .format = VK_FORMAT_D32_SFLOAT,
-                                        .subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 1}};
-    vkCreateImageView(h.device, &view, NULL, &d.view);
-    return d;
-}
-
-static void clear_depth(VkCommandBuffer cmd, const depth_image *d, float depth) {
+static void clear_depth(VkCommandBuffer cmd, const host_depth *d, float depth) {
     const VkClearDepthStencilValue value = {depth, 0};
     const VkImageSubresourceRange range = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 1};
-    image_barrier(cmd, d->image, VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
+    host_barrier(cmd, d->image, VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
     vkCmdClearDepthStencilImage(cmd, d->image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &value, 1, &range);
-    image_barrier(cmd, d->image, VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+    host_barrier(cmd, d->image, VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                   VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
 }
 
@@ -66,7 +33,7 @@ void test_depth(int is_reversed) {
     draw_a(plain, &camera, alone);
     expect(drawn_pixels(alone) > 200, "a camera of matrices shows something");
 
-    depth_image read = make_depth(), attached = make_depth();
+    host_depth read = host_make_depth(&h), attached = host_make_depth(&h);
     const sv_depth_image image = {(uint64_t)read.view, VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL, WIDTH, HEIGHT, 0};
     const sv_target_class class = {.struct_size = sizeof class,
                                    .color_format = FORMAT,
@@ -90,9 +57,9 @@ void test_depth(int is_reversed) {
         clear_depth(cmd, &read, is_near ? near_depth : far_depth);
         CHECK(sv_renderer_record(renderer, cmd, &shot, &diagnostic));
         CHECK(sv_renderer_record_pick(renderer, cmd, 0, WIDTH / 2, HEIGHT / 2, &diagnostic));
-        image_barrier(cmd, attached.image, VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
+        host_barrier(cmd, attached.image, VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
                       VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL);
-        image_barrier(cmd, h.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
+        host_barrier(cmd, h.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
                       VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
         begin_rendering(cmd, attached.view, far_depth);
         CHECK(sv_renderer_draw(renderer, cmd, 0, &diagnostic));
@@ -112,10 +79,6 @@ void test_depth(int is_reversed) {
     CHECK(sv_renderer_destroy(renderer, &diagnostic));
     CHECK(sv_renderer_destroy(plain, &diagnostic));
     CHECK(sv_transfer_function_destroy(function, &diagnostic));
-    const depth_image both[] = {read, attached};
-    for (int k = 0; k < 2; ++k) {
-        vkDestroyImageView(h.device, both[k].view, NULL);
-        vkDestroyImage(h.device, both[k].image, NULL);
-        vkFreeMemory(h.device, both[k].memory, NULL);
-    }
+    host_free_depth(&h, read);
+    host_free_depth(&h, attached);
 }

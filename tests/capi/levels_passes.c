@@ -44,7 +44,7 @@ static void in_a_render_pass(const uint8_t *wanted) {
     const sv_frame_info shot = {.struct_size = sizeof shot};
     VkCommandBuffer cmd = host_begin(&h);
     CHECK(sv_renderer_record(renderer, cmd, &shot, &diagnostic));
-    image_barrier(cmd, h.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
+    host_barrier(cmd, h.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
                   VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
     const VkClearValue clear = {{{BEHIND[0], BEHIND[1], BEHIND[2], BEHIND[3]}}};
     const VkRenderPassBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO,
@@ -91,9 +91,9 @@ static void of_several_samples(const uint8_t *wanted) {
     const sv_frame_info shot = {.struct_size = sizeof shot};
     VkCommandBuffer cmd = host_begin(&h);
     CHECK(sv_renderer_record(renderer, cmd, &shot, &diagnostic));
-    image_barrier(cmd, h.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
+    host_barrier(cmd, h.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
                   VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-    image_barrier(cmd, image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
+    host_barrier(cmd, image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
                   VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
     const VkRenderingAttachmentInfo color = {.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
                                              .imageView = view,

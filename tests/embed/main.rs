@@ -17,6 +17,7 @@ mod depth;
 mod flight;
 mod formats;
 mod frames;
+mod geometry;
 mod layouts;
 mod levels;
 mod parts;

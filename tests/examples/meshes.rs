@@ -37,8 +37,10 @@ fn rays_and_slices_stand_alike_among_meshes() {
     let blue = count(&|p| p[2] > 2.0 * p[0] && p[2] > 0.2);
     let orange = count(&|p| p[0] > 4.0 * p[2] && p[0] > 0.2);
     let bone = count(&|p| p[0] > 0.3 && p[2] > 0.3 && p[0] >= p[2]);
+    // Tubes before the head and behind it.
+    let green = count(&|p| p[1] > 1.5 * p[0] && p[1] > 1.2 * p[2] && p[1] > 0.2);
     assert!(
-        blue > 500 && orange > 500 && bone > 2000,
-        "{blue} {orange} {bone}"
+        blue > 500 && orange > 500 && bone > 2000 && green > 500,
+        "{blue} {orange} {bone} {green}"
     );
 }

@@ -1,0 +1,166 @@
+/* Fields that are none, lines that are not there, shapes that cannot be drawn. */
+#include "abuse.h"
+
+enum { SIDE = 4 };
+static float velocities[SIDE * SIDE * SIDE * 3];
+static const double SEEDS[] = {2, 2, 2, 9, 9, 9};
+
+static sv_trace_desc trace_desc(void) {
+    const sv_trace_desc made = {.struct_size = sizeof made,
+                                .dims = {SIDE, SIDE, SIDE},
+                                .velocities = velocities,
+                                .velocity_count = SIDE * SIDE * SIDE * 3,
+                                .seeds = SEEDS,
+                                .seed_count = 2};
+    return made;
+}
+static sv_status with_trace(sv_trace_desc desc) { return sv_trace(device, &desc, &made_handle, &diagnostic); }
+
+static void lines(void) {
+    for (int k = 0; k < SIDE * SIDE * SIDE; ++k) velocities[3 * k] = 2.0f;
+    const sv_trace_desc start = trace_desc();
+    const double nan = NAN;
+#define with with_trace
+    WITH(sv_trace_desc, start, dims[1], 0, SV_E_ARGUMENT);
+    WITH(sv_trace_desc, start, dims[1], 5, SV_E_ARGUMENT);
+    WITH(sv_trace_desc, start, dims[2], UINT32_MAX, SV_E_ARGUMENT);
+    WITH(sv_trace_desc, start, direction, 3, SV_E_ARGUMENT);
+    WITH(sv_trace_desc, start, velocities, NULL, SV_E_ARGUMENT);
+    WITH(sv_trace_desc, start, velocity_count, 0, SV_E_ARGUMENT);
+    WITH(sv_trace_desc, start, velocity_count, UINT64_MAX, SV_E_ARGUMENT);
+    WITH(sv_trace_desc, start, world_from_voxel[0], 1.0, SV_E_ARGUMENT);
+    WITH(sv_trace_desc, start, world_from_voxel[15], nan, SV_E_ARGUMENT);
+    WITH(sv_trace_desc, start, seed_count, UINT64_MAX, SV_E_LIMIT);
+    WITH(sv_trace_desc, start, length, -1.0, SV_E_ARGUMENT);
+    WITH(sv_trace_desc, start, duration, nan, SV_E_ARGUMENT);
+    WITH(sv_trace_desc, start, tolerance, INFINITY, SV_E_ARGUMENT);
+    sv_trace_desc even = start;
+    even.seeds = NULL;
+    WITH(sv_trace_desc, even, seed_count, 2, SV_E_ARGUMENT);
+    even.seed_count = 0;
+    WITH(sv_trace_desc, even, spacing, -1.0, SV_E_ARGUMENT);
+    static const double no_place[] = {1, NAN, 1};
+    sv_trace_desc nowhere = start;
+    nowhere.seeds = no_place, nowhere.seed_count = 1;
+    NAMED(SV_E_ARGUMENT, "sv_trace_desc.seeds", with(nowhere));
+#undef with
+    BAD(SV_E_ARGUMENT, sv_trace(device, &start, NULL, &diagnostic));
+    sv_lines found = 0;
+    uint64_t count = 0;
+    uint32_t causes[2];
+    double places[3 * 64];
+    GOOD(sv_trace(device, &start, &found, &diagnostic));
+    GOOD(sv_lines_count(found, &count, &diagnostic));
+    /* Along x from face to face; nothing where the second seed is. */
+    GOOD(sv_lines_cause(found, 0, causes, &diagnostic));
+    uint64_t vertices[2];
+    for (int line = 0; line < 2; ++line) GOOD(sv_lines_positions(found, line, NULL, &vertices[line], &diagnostic));
+    const int is_right = count == 2 && causes[0] == SV_CAUSE_DOMAIN && causes[1] == SV_CAUSE_DOMAIN &&
+                         vertices[0] > 3 && vertices[0] < 64 && vertices[1] == 0;
+    if (!is_right) failures += 1, fprintf(stderr, "FAILED: other lines than wanted\n");
+    uint64_t room = vertices[0];
+    GOOD(sv_lines_positions(found, 0, places, &room, &diagnostic));
+    const double *last = &places[3 * (room - 1)];
+    if (places[0] > 0.01 || last[0] < 3.99 || last[1] != 2.0) failures += 1, fprintf(stderr, "FAILED: other places\n");
+    room = vertices[0] - 1;
+    BAD(SV_E_LIMIT, sv_lines_positions(found, 0, places, &room, &diagnostic));
+    BAD(SV_E_LIMIT, sv_lines_values(found, 0, places, &room, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_lines_positions(found, 0, places, NULL, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_lines_positions(found, 2, places, &room, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_lines_values(found, UINT64_MAX, places, &room, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_lines_cause(found, 2, causes, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_lines_cause(found, 0, NULL, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_lines_count(found, NULL, &diagnostic));
+    GOOD(sv_lines_destroy(found, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_lines_count(found, &count, &diagnostic));
+}
+
+static const sv_target_class WITH_DEPTH = {.struct_size = sizeof(sv_target_class),
+                                           .color_format = FORMAT,
+                                           .depth_format = VK_FORMAT_D32_SFLOAT};
+static const sv_round_cone CONE = {.second = {1, 0, 0}, .first_radius = 1, .second_radius = 1};
+static const sv_triangle TRIANGLE = {.corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
+
+static sv_geometry_desc geometry_desc(void) {
+    const sv_geometry_desc made = {.struct_size = sizeof made,
+                                   .target = &WITH_DEPTH,
+                                   .cones = &CONE,
+                                   .cone_count = 1,
+                                   .triangles = &TRIANGLE,
+                                   .triangle_count = 1};
+    return made;
+}
+static sv_status with_geometry(sv_geometry_desc desc) {
+    return sv_geometry_create(device, &desc, &made_handle, &diagnostic);
+}
+static sv_status with_cone(sv_round_cone cone) {
+    sv_geometry_desc desc = geometry_desc();
+    desc.cones = &cone;
+    return with_geometry(desc);
+}
+static sv_status with_triangle(sv_triangle triangle) {
+    sv_geometry_desc desc = geometry_desc();
+    desc.triangles = &triangle;
+    return with_geometry(desc);
+}
+
+static void shapes(void) {
+    const sv_geometry_desc start = geometry_desc();
+#define with with_geometry
+    WITH(sv_geometry_desc, start, target, NULL, SV_E_ARGUMENT);
+    WITH(sv_geometry_desc, start, target, &CLASS, SV_E_ARGUMENT);
+    WITH(sv_geometry_desc, start, color_space, 2, SV_E_ARGUMENT);
+    WITH(sv_geometry_desc, start, frames_in_flight, 65, SV_E_LIMIT);
+    WITH(sv_geometry_desc, start, cones, NULL, SV_E_ARGUMENT);
+    WITH(sv_geometry_desc, start, cone_count, UINT64_MAX, SV_E_LIMIT);
+    WITH(sv_geometry_desc, start, triangles, NULL, SV_E_ARGUMENT);
+    WITH(sv_geometry_desc, start, triangle_count, UINT64_MAX, SV_E_LIMIT);
+#undef with
+#define with with_cone
+    WITH(sv_round_cone, CONE, first_radius, 0, SV_E_ARGUMENT);
+    WITH(sv_round_cone, CONE, second_radius, -1, SV_E_ARGUMENT);
+    WITH(sv_round_cone, CONE, second_radius, NAN, SV_E_ARGUMENT);
+    WITH(sv_round_cone, CONE, first_radius, 1e-60, SV_E_ARGUMENT);
+    WITH(sv_round_cone, CONE, first[2], NAN, SV_E_ARGUMENT);
+    WITH(sv_round_cone, CONE, second[0], 1e300, SV_E_ARGUMENT);
+    WITH(sv_round_cone, CONE, first_color[1], NAN, SV_E_ARGUMENT);
+#undef with
+#define with with_triangle
+    WITH(sv_triangle, TRIANGLE, corners[1][1], INFINITY, SV_E_ARGUMENT);
+    WITH(sv_triangle, TRIANGLE, colors[2][0], NAN, SV_E_ARGUMENT);
+    WITH(sv_triangle, TRIANGLE, reserved, 7, SV_E_ARGUMENT);
+#undef with
+    BAD(SV_E_ARGUMENT, sv_geometry_create(device, &start, NULL, &diagnostic));
+    sv_geometry made = 0;
+    GOOD(sv_geometry_create(device, &start, &made, &diagnostic));
+    sv_camera camera = {.struct_size = sizeof camera, .kind = SV_CAMERA_LOOK_AT};
+    sv_frame_info shot = {.struct_size = sizeof shot, .camera = &camera};
+    NAMED(SV_E_ARGUMENT, "SV_CAMERA_MATRICES", sv_geometry_draw(made, cmd, &shot, WIDTH, HEIGHT, &diagnostic));
+    camera.kind = SV_CAMERA_MATRICES;
+    BAD(SV_E_ARGUMENT, sv_geometry_draw(made, cmd, &shot, WIDTH, HEIGHT, &diagnostic));
+    camera.view_from_world[0] = camera.view_from_world[5] = camera.view_from_world[10] = camera.view_from_world[15] = 1.0;
+    camera.clip_from_view[0] = camera.clip_from_view[5] = 1.0, camera.clip_from_view[10] = -1.01;
+    camera.clip_from_view[11] = -1.0, camera.clip_from_view[14] = -1.0;
+    BAD(SV_E_STATE, sv_geometry_draw(made, cmd, &shot, WIDTH, HEIGHT, &diagnostic));
+    VkCommandBuffer uploads = host_begin(&h);
+    GOOD(sv_geometry_record_upload(made, uploads, &diagnostic));
+    BAD(SV_E_STATE, sv_geometry_record_upload(made, uploads, &diagnostic));
+    host_submit_and_wait(&h, uploads);
+    BAD(SV_E_ARGUMENT, sv_geometry_record_upload(made, NULL, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_geometry_draw(made, NULL, &shot, WIDTH, HEIGHT, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_geometry_draw(made, cmd, NULL, WIDTH, HEIGHT, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_geometry_draw(made, cmd, &shot, 0, HEIGHT, &diagnostic));
+    BAD(SV_E_LIMIT, sv_geometry_draw(made, cmd, &shot, WIDTH, UINT32_MAX, &diagnostic));
+    shot.frame = 1;
+    BAD(SV_E_ARGUMENT, sv_geometry_draw(made, cmd, &shot, WIDTH, HEIGHT, &diagnostic));
+    shot.frame = 0, camera.is_reversed = 1;
+    BAD(SV_E_ARGUMENT, sv_geometry_draw(made, cmd, &shot, WIDTH, HEIGHT, &diagnostic));
+    GOOD(sv_geometry_destroy(made, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_geometry_draw(made, cmd, &shot, WIDTH, HEIGHT, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_geometry_destroy(made, &diagnostic));
+}
+
+void abuse_geometry(void) {
+    lines();
+    shapes();
+}
