@@ -108,20 +108,22 @@ impl KeptSamples {
         let own = of.words();
         let sums = match self.past {
             None => PathSums::default(),
-            Some(past) => match (difference("", &past.of, &own), past.sums) {
-                (None, Some(sums)) => sums,
-                _ if force => PathSums::default(),
-                (why, _) => {
-                    return Err(Error::usage(
-                        format!(
-                            "--resume: {}: {}",
-                            self.path.display(),
-                            why.unwrap_or_default()
-                        ),
-                        "the words and the input of the first run go on with it; --force begins anew",
-                    ));
+            Some(past) => {
+                let size = |of: &Value| of["scene"]["picture"]["size"].clone();
+                let why = difference("scene.picture.size", &size(&past.of), &size(&own))
+                    .or_else(|| difference("", &past.of, &own));
+                match (why, past.sums) {
+                    (None, Some(sums)) => sums,
+                    _ if force => PathSums::default(),
+                    (why, _) => {
+                        let why = why.unwrap_or_default();
+                        return Err(Error::usage(
+                            format!("--resume: {}: {why}", self.path.display()),
+                            "the words and the input of the first run go on with it; --force begins anew",
+                        ));
+                    }
                 }
-            },
+            }
         };
         let wanted = of.settings.path.samples;
         let found = sums.paths();

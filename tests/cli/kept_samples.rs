@@ -81,8 +81,8 @@ fn samples_of_another_picture_are_refused_by_what_is_other() {
         ("--light 1,0,0", "`scene.light.light`"),
         ("--phase hg:0.3", "`scene.path.phase`"),
         ("--environment 1,1,1 --background environment", "`scene."),
-        ("--filter nearest", "`scene.sampling.filter`"),
-        ("--clip 1,0,0,0", "`scene.sampling.clip`"),
+        ("--filter nearest", "`scene."),
+        ("--clip 1,0,0,0", "`scene."),
     ] {
         let ran = folder.run(&format!("{again} {more}"));
         ran.assert_refused(2, &[said, "s:", "--force begins anew"]);

@@ -48,7 +48,7 @@ fn layers_say_the_error_of_each_pixel_and_what_comes_through() {
             seed,
             ..lit()
         });
-        let scene = scene(&volume, &function, &camera, &settings, [60, 50]);
+        let scene = scene(&volume, &function, &camera, &settings, [30, 25]);
         let kinds = [LayerKind::Noise, LayerKind::Transmittance];
         let picture = renderer.render(&scene, &kinds).expect("a picture").picture;
         (picture, renderer.traced())
@@ -69,18 +69,18 @@ fn layers_say_the_error_of_each_pixel_and_what_comes_through() {
     let variance: f64 = noise.values.iter().map(|&x| f64::from(x).powi(2)).sum();
     let wanted = traced.noise.expect("several blocks");
     assert!(((variance / light).sqrt() / wanted - 1.0).abs() < 1e-5);
-    let (truth, _) = of(512, 9);
+    let (truth, _) = of(256, 9);
     let of_pixels = picture.pixels.iter().zip(&truth.pixels).zip(&noise.values);
     let lit = of_pixels.filter(|(_, noise)| **noise > 0.0);
     let (mut squares, mut count) = (0.0, 0.0);
     for ((a, b), &noise) in lit {
-        squares += ((y(a) - y(b)) / f64::from(noise)).powi(2) / (1.0 + 1.0 / 8.0);
+        squares += ((y(a) - y(b)) / f64::from(noise)).powi(2) / (1.0 + 1.0 / 4.0);
         count += 1.0;
     }
     // By B = 11 blocks or more, of Gauss's curve: (B - 1) / (B - 3) <= 1.25; of light that is rare the blocks know less.
     let mean: f64 = squares / count;
     println!("{mean} over {count} pixels");
-    assert!(count > 500.0 && (0.9..1.6).contains(&mean), "{mean}");
+    assert!(count > 200.0 && (0.9..1.6).contains(&mean), "{mean}");
 }
 
 /// The picture of `--noise` is that of as many paths, and its noise is the error against many more.

@@ -59,7 +59,7 @@ fn by_points(count: usize) -> PathTracing {
         srgb: [1.0, 0.9, 0.8],
     };
     PathTracing {
-        lamps: [dvec3(11.0, 8.0, 6.0), dvec3(40.0, -9.0, 3.0)].map(point)[..count].to_vec(),
+        lamps: [dvec3(40.0, -9.0, 3.0), dvec3(11.0, 8.0, 6.0)].map(point)[..count].to_vec(),
         lights: Vec::new(),
         ..lit()
     }
