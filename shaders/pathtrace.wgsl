@@ -22,6 +22,7 @@
 #import phase
 #import surface
 #import sky
+#import lamp
 
 // Mean radiance of paths, and which part of them has met matter.
 @group(0) @binding(6) var picture: texture_storage_2d<rgba32float, read_write>;
@@ -72,6 +73,8 @@ struct Collision {
     // What arrives if nothing is in the way, and the part of it that does.
     light: vec3<f32>,
     through: f32,
+    // World length to where it comes from.
+    reach: f32,
 }
 
 @compute @workgroup_size(8, 8)
@@ -151,6 +154,7 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
                 state = SCATTER;
                 if any(path.weight * at.light > vec3(0.0)) {
                     walk = walk_along(Ray(at.place, to_light));
+                    walk.end = min(walk.end, at.reach);
                     state = SHADOW;
                 }
             }
@@ -237,6 +241,7 @@ fn normal_at(place: vec3<f32>, direction: vec3<f32>, u: f32) -> vec3<f32> {
 // surface across its way radiance 1: irradiance pi.
 fn light_at(at: ptr<function, Collision>, numbers: vec4<f32>, key: vec4<u32>) -> vec3<f32> {
     (*at).light = vec3(0.0);
+    (*at).reach = 3.4e38;
     let count = light_kinds();
     if count == 0u {
         return vec3(0.0);
@@ -249,6 +254,11 @@ fn light_at(at: ptr<function, Collision>, numbers: vec4<f32>, key: vec4<u32>) ->
         let of_sky = sky_at(way);
         let both = of_sky.density + f32(count) * scattering_density(*at, way);
         irradiance = select(vec3(0.0), of_sky.radiance / (3.1415927 * both), of_sky.density > 0.0);
+    } else if is_lamp(i) {
+        let lamp = light_of_lamp(i, (*at).place, numbers.zw);
+        way = lamp.way;
+        irradiance = lamp.color;
+        (*at).reach = lamp.reach;
     } else {
         way = around(frame.light_directions[i].xyz, 1.0 - numbers.z * frame.path_light_size, numbers.w);
         irradiance = frame.light_colors[i].xyz;

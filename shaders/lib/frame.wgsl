@@ -145,7 +145,7 @@ struct Frame {
     level_values: array<vec4<f32>, MAX_LEVELS>,
     level_colors: array<vec4<f32>, MAX_LEVELS>,
     // Light: no lights, no shading. The way to each light is a unit vector of world space; w is not 0 for one
-    // that shines along the pixel's ray.
+    // that shines along the pixel's ray, and where matter scatters light for one that has a place, which xyz then is.
     light_directions: array<vec4<f32>, MAX_LIGHTS>,
     light_colors: array<vec4<f32>, MAX_LIGHTS>,
     light_count: u32,
@@ -252,6 +252,8 @@ struct Frame {
     path_alpha: f32,
     // 1 - cosine of half the angle that a light is wide.
     path_light_size: f32,
+    // Lights with a place: which way a disc faces, 0 for a sphere, and the radius.
+    lamps: array<vec4<f32>, MAX_LIGHTS>,
     // A thin lens: half of its width to the right and up, and how far away along `forward` is sharp; 0: none.
     path_lens_right: vec3<f32>,
     path_focus: f32,
@@ -263,6 +265,8 @@ struct Frame {
     path_bin_scale: f32,
     // Optical depth behind which light is not followed any more that samples follow to lights; 0: they follow none.
     scattering_depth: f32,
+    // Segments of a ray are step_world long over its slope to `forward`, which counts as this at least: 1 where all are alike.
+    least_slope: f32,
     path_majorants: array<vec4<f32>, MAJORANT_VECTORS>,
 }
 

@@ -1,4 +1,4 @@
-// What comes through from far away to a position, along a straight line from there to the end of the domain:
+// What comes through to a position along a straight line from there, from a light or from beyond the end of the domain:
 //
 //     T = exp(-sum of sigma_j h_j)        at (j + 1/2) h; the last, shorter segment at its own middle
 //
@@ -10,15 +10,14 @@
 
 struct LightRay {
     voxel: Ray,
-    // World length to the end of the domain, and how many whole steps lie before that.
+    // World length to the light or to the end of the domain, and how many whole steps lie before that.
     reach: f32,
     whole: i32,
 }
 
-fn through_to(voxel: vec3<f32>, way: vec3<f32>) -> f32 {
-    let world = Ray(vec4(voxel, 1.0) * frame.world_from_voxel, way);
-    let along = Ray(voxel, vec4(way, 0.0) * frame.voxel_from_world);
-    let reach = domain_interval(world, along).y;
+fn through_to(world: Ray, voxel: vec3<f32>, far: f32) -> f32 {
+    let along = Ray(voxel, vec4(world.direction, 0.0) * frame.voxel_from_world);
+    let reach = min(domain_interval(world, along).y, far);
     if !(reach > 0.0) {
         return 1.0;
     }

@@ -2,12 +2,14 @@
 //
 //     S = albedo (sum over lights of p(c) E T + T_sky sky)        E = pi colour,  c between the directions of travel
 //
-// Where light is not followed from here on, T comes from the light volume. CPU reference: src/technique/scattered_light.rs.
+// and of a point pi colour d^2 times the mean of 1 / r^2 over its segment, d the distance where that is pi colour. Where light is
+// not followed from here on, T comes from the light volume. CPU reference: src/technique/scattered_light.rs.
 
 #import transfer_{transfer}
 #import light_depth
 #import light_ray
 #import phase
+#import point_light
 
 fn material_of(sample: Sample) -> Classified {
     let material = classify(sample.value);
@@ -16,17 +18,24 @@ fn material_of(sample: Sample) -> Classified {
         return material;
     }
     let voxel = voxel_of(sample.place);
+    let place = vec4(voxel, 1.0) * frame.world_from_voxel;
     var light = scattered_light(0u, voxel, frame.occlusion_strength != 0.0) * frame.path_sky;
     for (var i = 0u; i < frame.light_count; i++) {
-        let way = frame.light_directions[i].xyz;
-        var through = 1.0;
-        if frame.scattering_depth == 0.0 {
-            through = scattered_light(frame.shadow_bundle + i, voxel, frame.has_shadows != 0u);
-        } else {
-            through = through_to(voxel, way);
+        var way = frame.light_directions[i].xyz;
+        var reach = 3.4e38;
+        var part = 3.1415927;
+        if frame.light_directions[i].w != 0.0 {
+            let to_light = way - place;
+            reach = max(sqrt(dot(to_light, to_light)), 1e-15);
+            way = to_light / reach;
+            part *= mean_of_falloff(to_light, sample.ray_direction);
         }
-        let part = 3.1415927 * phase_value(dot(sample.ray_direction, way)) * through;
-        light += part * frame.light_colors[i].xyz;
+        if frame.scattering_depth == 0.0 {
+            part *= scattered_light(frame.shadow_bundle + i, voxel, frame.has_shadows != 0u);
+        } else {
+            part *= through_to(Ray(place, way), voxel, reach);
+        }
+        light += part * phase_value(dot(sample.ray_direction, way)) * frame.light_colors[i].xyz;
     }
     return Classified(frame.path_albedo * material.color * light, material.extinction);
 }

@@ -4,13 +4,14 @@ use super::{
     Error,
     annotation::{annotation, finish},
     flags::{Classification, Depth, InputFlags, PHANTOM, SceneFlags},
+    kept_samples::{KeptSamples, PictureOf},
     load::open,
     look::{Chosen, Framing, Use, View, Views, prepared},
     output::{self, write_whole},
     planes::Panels,
     progress::{Progress, ProgressWord},
     reasons::why_empty,
-    renderer::Device,
+    renderer::{Device, REFERENCE},
     scene_file,
     scene_inputs::SceneInputs,
     show::ShowFlags,
@@ -29,6 +30,7 @@ use clap::Args;
 use std::{
     io::IsTerminal,
     path::{Path, PathBuf},
+    sync::PoisonError,
     time::Instant,
 };
 
@@ -74,6 +76,17 @@ pub struct Render {
     /// Say on stderr how far the work is
     #[arg(long, value_enum, default_value_t, help_heading = "Run")]
     progress: ProgressWord,
+    /// Keep the samples of --technique pathtrace in a file, every 30 seconds and at the end, so that a later run can go on
+    #[arg(
+        long,
+        value_name = "FILE",
+        conflicts_with = "refine",
+        help_heading = "Run"
+    )]
+    keep_samples: Option<PathBuf>,
+    /// Go on with the samples that --keep-samples has kept, of this very picture, up to --spp
+    #[arg(long, requires = "keep_samples", help_heading = "Run")]
+    resume: bool,
     /// Replace files that exist
     #[arg(long, help_heading = "Run")]
     force: bool,
@@ -162,11 +175,16 @@ impl Render {
         scene.annotate.check()?;
         let inputs = scene_file::inputs(&scene, self.scene_file.as_deref());
         let is_annotated = scene.annotate.annotate.is_some();
-        output::check(
-            &self.outputs(&output, format, &layers, is_annotated),
-            &inputs,
-            self.force,
-        )?;
+        let kept = self.kept(&scene, &settings, extent_pixels)?;
+        // A better picture takes the place of that of the run before.
+        let force = self.force || kept.as_ref().is_some_and(|kept| kept.replaces(&output));
+        let outputs = self.outputs(&output, format, &layers, is_annotated);
+        output::check(&outputs, &inputs, force)?;
+        let files: Vec<_> = outputs
+            .into_iter()
+            .chain(self.keep_samples.clone())
+            .collect();
+        output::check(&files, &inputs, true)?;
 
         let progress = Progress::new(self.progress);
         shown_by.iter().for_each(|words| progress.note(words));
@@ -214,6 +232,34 @@ impl Render {
         } = view;
         renderer.watch(|part| progress.part(part));
         renderer.end_paths_by(gate);
+        let base = shown.base(&scene, settings.mode)?;
+        let frozen = |integrals| {
+            let chosen = Chosen::of_picture(view, &shown, parts.beside(), integrals, base.as_ref());
+            chosen.frozen(&view.scene)
+        };
+        let mut failed_to_keep = None;
+        if let Some(kept) = kept {
+            if panels.are_several() {
+                return Err(Error::usage(
+                    "--keep-samples is of one picture, and --section has several planes",
+                    "name one plane",
+                ));
+            }
+            let of = PictureOf {
+                scene: &frozen(None),
+                extent: panels.extent(),
+                volume,
+                settings,
+                device: renderer.device(),
+                driver: renderer.driver(),
+            };
+            let (begun, keeper) = kept.begin(&output, &of, self.force)?;
+            if begun.paths() > 0 {
+                progress.note(&format!("{} paths a pixel are there", begun.paths()));
+            }
+            failed_to_keep = Some(keeper.failed());
+            renderer.keep_paths(begun, move |sums| keeper.keep(sums, gate));
+        }
         let mut frames = Vec::new();
         let mut last = None;
         for done in 0..self.repeat {
@@ -281,7 +327,7 @@ impl Render {
         }
         let options = WriteOptions {
             bit_depth: scene.picture.bit_depth(),
-            force: self.force,
+            force,
         };
         if is_stdout {
             let encoded = EncodedPicture::new(&picture, Path::new("picture.png"), options)?;
@@ -300,10 +346,7 @@ impl Render {
                 Classification::RangeOfPicture => Some(renderer.projected_range(camera)?),
                 Classification::Function(_) => None,
             };
-            let base = shown.base(&scene, settings.mode)?;
-            let beside = parts.beside();
-            let chosen = Chosen::of_picture(view, &shown, beside, integrals, base.as_ref());
-            let mut frozen = chosen.frozen(&view.scene);
+            let mut frozen = frozen(integrals);
             if panels.are_several() {
                 frozen.section = scene.section.clone();
                 frozen.camera.view_height = scene.camera.view_height;
@@ -327,10 +370,46 @@ impl Render {
             };
             write_whole(path, timings.json().as_bytes(), self.force, gate)?;
         }
+        if let Some(failed) = failed_to_keep
+            && let Some(error) = failed.lock().unwrap_or_else(PoisonError::into_inner).take()
+        {
+            return Err(error);
+        }
         match gate.was_asked() {
             true => Err(Error::Interrupted),
             false => Ok(()),
         }
+    }
+
+    /// The file of `--keep-samples`, and what a run before has left in it.
+    fn kept(
+        &self,
+        scene: &SceneFlags,
+        settings: &Settings,
+        extent: [u32; 2],
+    ) -> Result<Option<KeptSamples>, Error> {
+        let Some(path) = &self.keep_samples else {
+            return Ok(None);
+        };
+        if !settings.technique.traces_paths() {
+            return Err(Error::usage(
+                "--keep-samples is for --technique pathtrace: other pictures have all samples at once",
+                "leave it out",
+            ));
+        }
+        if scene.one_device()? == Some(REFERENCE) {
+            return Err(Error::usage(
+                "--keep-samples is of devices, and --device reference traces all paths at once",
+                "leave out --device reference",
+            ));
+        }
+        if self.repeat > 1 {
+            return Err(Error::usage(
+                "--keep-samples is of one picture, and --repeat draws several",
+                "leave out --repeat",
+            ));
+        }
+        KeptSamples::open(path, extent, self.resume, self.force).map(Some)
     }
 
     /// The flags laid over those of `--scene`.

@@ -13,7 +13,7 @@ use super::{
 use crate::{
     camera::Camera,
     gpu::{DeviceChoice, Headless, Options},
-    offscreen::{self, Ceilings, Kept, Stream, Traced, reference},
+    offscreen::{self, Ceilings, Kept, PathSums, Stream, Traced, reference},
     picture::{LayerKind, Picture},
     scene::{Beside, Scene},
     technique::{Filter, InPixel, Mode, Role, Settings, layers::Lack},
@@ -216,6 +216,12 @@ impl<'a> Renderer<'a> {
     pub fn new(job: Job<'a>, camera: &Camera, device: Device) -> Result<Self, Error> {
         check_layers(&job)?;
         let device = device.into_made()?;
+        if device.on.is_none() && job.layers.contains(&LayerKind::Noise) {
+            return Err(Error::usage(
+                "--aov noise is of devices, and --device reference traces all paths at once",
+                "leave out --device reference",
+            ));
+        }
         let Some(on) = device.on else {
             return Ok(Self {
                 job,
@@ -271,6 +277,13 @@ impl<'a> Renderer<'a> {
         let traces = self.job.settings.technique.traces_paths();
         if let Some(renderer) = self.on_device.as_mut().filter(|_| traces) {
             renderer.end_paths_when(gate.ends_early());
+        }
+    }
+
+    /// Who keeps the sums of paths, and what they begin with; nobody those of the CPU references.
+    pub fn keep_paths(&mut self, begun: PathSums, keep: impl FnMut(&PathSums) + Send + 'a) {
+        if let Some(renderer) = &mut self.on_device {
+            renderer.keep_paths(begun, keep);
         }
     }
 
@@ -481,6 +494,8 @@ fn check_layers(job: &Job) -> Result<(), Error> {
             Some(Lack::OneValue) => "a mode with one value, such as --mode mip",
             Some(Lack::Transmittance) => "--mode composite",
             Some(Lack::Rays) => "--technique raycast",
+            Some(Lack::Paths) => "--technique pathtrace",
+            Some(Lack::Unlit) => "another --background than environment",
             Some(Lack::Depth) => "a mode with a depth, such as --mode mip",
             Some(Lack::Annotation) | None => match layer {
                 LayerKind::Label if !has_labels(job) => {

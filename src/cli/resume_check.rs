@@ -6,10 +6,11 @@
 //! ```
 
 use super::Error;
+use crate::volume::{Volume, Voxels};
 use serde_json::{Value, json};
 use std::{
     fs,
-    hash::{DefaultHasher, Hasher},
+    hash::{DefaultHasher, Hash, Hasher},
     io,
     path::{Path, PathBuf},
     time::UNIX_EPOCH,
@@ -53,7 +54,7 @@ fn stamp(path: &Path) -> io::Result<Value> {
             metadata.len()
         ));
     }
-    let hash = hash_of(|hasher| std::hash::Hash::hash(&facts, hasher));
+    let hash = hash_of(|hasher| facts.hash(hasher));
     Ok(json!({ "bytes": bytes, "names_sizes_and_changes": hash }))
 }
 
@@ -62,6 +63,19 @@ pub fn hash_of(write: impl FnOnce(&mut DefaultHasher)) -> String {
     let mut hasher = DefaultHasher::new();
     write(&mut hasher);
     format!("{:016x}", hasher.finish())
+}
+
+/// Puts all voxels of a volume into a hash, and which of them have no data.
+pub fn hash_voxels(volume: &Volume, hasher: &mut DefaultHasher) {
+    match &volume.voxels {
+        Voxels::U8(v) => hasher.write(v),
+        Voxels::I8(v) => hasher.write(bytemuck::cast_slice(v)),
+        Voxels::U16(v) => hasher.write(bytemuck::cast_slice(v)),
+        Voxels::I16(v) => hasher.write(bytemuck::cast_slice(v)),
+        Voxels::F16(v) => hasher.write(bytemuck::cast_slice(v)),
+        Voxels::F32(v) => hasher.write(bytemuck::cast_slice(v)),
+    }
+    volume.validity.hash(hasher);
 }
 
 /// Where two values part, as in "`scene.camera.zoom` was 2.0, is 3.0".

@@ -23,7 +23,7 @@ mod upload;
 
 pub use denoise::denoised;
 pub use probe::{Ceilings, ceilings};
-pub use renderer::{Filtered, Kept, Rendered, Renderer, Traced, check_geometry};
+pub use renderer::{Filtered, Kept, PathSums, Rendered, Renderer, Traced, check_geometry};
 pub use stream::{Stream, StreamOptions};
 
 /// Why there is no picture.

@@ -15,6 +15,7 @@ mod gather;
 mod kept;
 mod pacing;
 mod path_sky;
+mod path_sums;
 mod paths;
 mod readback;
 mod skipping;
@@ -53,6 +54,7 @@ use gather::points_at_once;
 pub use kept::Kept;
 use pacing::{Known, passes_of};
 use path_sky::PathSky;
+pub use path_sums::PathSums;
 use paths::Ends;
 pub use paths::Traced;
 use skipping::Skipped;
@@ -99,7 +101,7 @@ pub struct Renderer<'v> {
     passes_done: [usize; 2],
     /// Geometry in the pictures.
     behind: Option<Behind>,
-    path_ends: Ends,
+    path_ends: Ends<'v>,
     path_sky: PathSky,
     device: Headless,
 }
@@ -327,8 +329,10 @@ impl<'v> Renderer<'v> {
         clock: &mut Clock,
     ) -> Result<Picture, Error> {
         let most_turns = self.device.gpu().limits().max_loop_turns;
-        self.passes_done = [0, passes_of(scene, !layers.is_empty(), most_turns)];
-        self.prepare(scene, !layers.is_empty())?;
+        // Those of paths are made of their sums.
+        let has_layers = !layers.is_empty() && !scene.settings.technique.traces_paths();
+        self.passes_done = [0, passes_of(scene, has_layers, most_turns)];
+        self.prepare(scene, has_layers)?;
         self.prepare_skip(scene)?;
         let functions = scene.transfers().into_iter();
         match functions.collect::<Option<Vec<_>>>() {
@@ -348,18 +352,25 @@ impl<'v> Renderer<'v> {
             }
             None => return Err(technique::Error::NoTransferFunction.into()),
         }
-        let pixels = match scene.settings.technique.traces_paths() {
-            true => self.picture_of_paths(scene, clock)?,
-            false => self.mean_of_rays(scene, clock)?,
-        };
+        let [width, height] = scene.extent_pixels;
+        let color_space = scene.settings.color_space;
+        if scene.settings.technique.traces_paths() {
+            let (pixels, sums) = self.picture_of_paths(scene, clock)?;
+            return Ok(Picture {
+                width,
+                height,
+                pixels,
+                color_space,
+                layers: layers.iter().map(|&kind| sums.layer(kind)).collect(),
+            });
+        }
+        let pixels = self.mean_of_rays(scene, clock)?;
         let per_side = scene.settings.rays_per_side;
         if per_side > 1 && !layers.is_empty() {
             self.look_behind(scene, InPixel::CENTER)?;
             clock.add(self.gather(scene, InPixel::CENTER)?);
         }
         let layers = self.read_layers(scene, layers)?;
-        let [width, height] = scene.extent_pixels;
-        let color_space = scene.settings.color_space;
         Ok(Picture {
             width,
             height,

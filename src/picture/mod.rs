@@ -76,13 +76,15 @@ pub enum LayerKind {
     Normal,
     /// The label at the first hit.
     Label,
+    /// Path tracing: the standard error of luminance, linear; NaN where too few paths tell.
+    Noise,
     /// Marks that lie over the picture: linear light times opacity, and opacity. No renderer makes it.
     Annotation,
 }
 
 impl LayerKind {
     /// All that renderers make, in the order of `--aov`'s help.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Value,
         Self::Depth,
         Self::Transmittance,
@@ -90,6 +92,7 @@ impl LayerKind {
         Self::Position,
         Self::Normal,
         Self::Label,
+        Self::Noise,
     ];
 
     /// The word of `--aov`, the name of the EXR channel, and the `NAME` of `OUT.NAME.npy`.
@@ -102,6 +105,7 @@ impl LayerKind {
             Self::Position => "position",
             Self::Normal => "normal",
             Self::Label => "label",
+            Self::Noise => "noise",
             Self::Annotation => "annotation",
         }
     }

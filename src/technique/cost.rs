@@ -100,7 +100,8 @@ const FETCHES_OF_LIGHT: f64 = 2.0;
 const PART_OF_LIGHT_RAY: f64 = 0.5;
 
 fn fetches_of_scattering(view: &View, scattering: SingleScattering) -> f64 {
-    let lights = view.settings.path.lights.len() as f64;
+    let path = &view.settings.path;
+    let lights = (path.lights.len() + path.lamps.len()) as f64;
     1.0 + lights
         * match scattering {
             SingleScattering::Open => 0.0,

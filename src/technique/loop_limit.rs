@@ -97,7 +97,8 @@ pub fn turns_per_sample(
     let of_labels = 1 + mask + if has_gradient { 14 } else { 0 };
     if settings.single_scattering.is_some() {
         // In the light volume each light, and the sky, has the corners of a cell.
-        let of_light = 10 * (1 + settings.path.lights.len() as u64);
+        let lights = settings.path.lights.len() + settings.path.lamps.len();
+        let of_light = 10 * (1 + lights as u64);
         return 4 + 2 * (of_numbers + search) + of_light;
     }
     let [labels, volumes] = [functions.labels, volumes].map(|n| n as u64);
@@ -125,9 +126,15 @@ impl View<'_> {
         let camera = self.camera.frame();
         let clip = self.settings.clip_planes.len() as f64;
         let lights = self.settings.path.lights.iter();
-        let turns = lights.map(|light| {
+        let ways = lights.map(|light| {
             let way = light.way(&camera).unwrap_or(DVec3::ZERO);
-            let steps = self.longest_way(way) / self.step_world() + 1.0;
+            self.longest_way(way)
+        });
+        // Those of a point lead anywhere.
+        let lamps = self.settings.path.lamps.iter();
+        let all = ways.chain(lamps.map(|_| self.grid.diagonal()));
+        let turns = all.map(|length| {
+            let steps = length / self.step_world() + 1.0;
             steps * (7.0 / 8.0 + mask + search) + 6.0 + clip
         });
         turns.sum()

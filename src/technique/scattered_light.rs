@@ -1,10 +1,14 @@
-//! Single scattering on the CPU: CPU reference of `shaders/lib/material_scattered.wgsl` and `light_ray.wgsl`.
+//! Single scattering on the CPU: CPU reference of `shaders/lib/material_scattered.wgsl`, `light_ray.wgsl` and
+//! `point_light.wgsl`.
 
 use crate::ray::{Ray, domain_interval, vector, voxel_ray};
-use crate::real::{Real, add, dot, scale};
+use crate::real::{Real, add, dot, scale, sub};
 use crate::shaders::Frame;
-use crate::technique::pathtrace::phase_value;
+use crate::technique::pathtrace::{phase_value, turn_of};
 use crate::technique::shading::Lamps;
+
+/// How near a ray passes by a point at least, in steps.
+const LEAST_OF_STEP: f64 = 0.01;
 
 /// The source of a sample of this albedo, before the scale of albedos. `extinction_at` says how much is in the way of light
 /// at a position in voxel space.
@@ -16,6 +20,8 @@ pub fn scattered<R: Real>(
 ) -> [R; 3] {
     let pi = R::from_f64(std::f64::consts::PI);
     let one = R::from_f64(1.0);
+    let rows = frame.world_from_voxel;
+    let place = rows.map(|[x, y, z, w]| dot(vector([x, y, z]), lamps.voxel) + R::from_f32(w));
     let in_volume = |bundle: u32| {
         let found = lamps
             .field
@@ -28,38 +34,62 @@ pub fn scattered<R: Real>(
     };
     let mut light = scale(vector(frame.path_sky), of_sky);
     let lights = frame.light_directions.iter().zip(&frame.light_colors);
-    for (i, (&[x, y, z, _], &[r, g, b, _])) in lights.take(frame.light_count as usize).enumerate() {
-        let way = vector([x, y, z]);
+    for (i, (&[x, y, z, w], &[r, g, b, _])) in lights.take(frame.light_count as usize).enumerate() {
+        let (way, reach, falloff) = match w == 0.0 {
+            true => (vector([x, y, z]), R::from_f32(f32::MAX), one),
+            false => {
+                let to_light = sub(vector([x, y, z]), place);
+                let reach = dot(to_light, to_light).sqrt().max(R::from_f64(1e-15));
+                let falloff = mean_of_falloff(frame, to_light, lamps.ray_direction);
+                (scale(to_light, one / reach), reach, falloff)
+            }
+        };
         let through = match frame.scattering_depth == 0.0 {
             true if frame.has_shadows != 0 => in_volume(frame.shadow_bundle + i as u32),
             true => one,
-            false => through_to(frame, lamps.voxel, way, &extinction_at),
+            false => {
+                let along = Ray {
+                    origin: place,
+                    direction: way,
+                };
+                through_to(frame, &along, lamps.voxel, reach, &extinction_at)
+            }
         };
-        let part = pi * phase_value(frame, dot(lamps.ray_direction, way)) * through;
+        let phase = phase_value(frame, dot(lamps.ray_direction, way));
+        let part = pi * falloff * through * phase;
         light = add(light, scale(vector([r, g, b]), part));
     }
     let factor = R::from_f32(frame.path_albedo);
     std::array::from_fn(|c| factor * albedo[c] * light[c])
 }
 
-/// What comes through from far away along `way` to a position in voxel space.
+/// Of a point's light, the mean of 1 / r^2 over the segment of a ray, from whose middle the point lies at `to_light`.
+fn mean_of_falloff<R: Real>(frame: &Frame, to_light: [R; 3], ray_direction: [R; 3]) -> R {
+    let n = |x: f64| R::from_f64(x);
+    let slope = dot(vector(frame.forward), ray_direction).abs();
+    let h = R::from_f32(frame.step_world) / slope.max(R::from_f32(frame.least_slope));
+    let along = dot(to_light, ray_direction);
+    let beside = sub(to_light, scale(ray_direction, along));
+    let d = dot(beside, beside).sqrt().max(n(LEAST_OF_STEP) * h);
+    let product = along * along - n(0.25) * h * h;
+    n(std::f64::consts::TAU) * turn_of([d * d + product, d * h]) / (d * h)
+}
+
+/// What comes through to a position in voxel space along a ray of the world that begins there, `far` long at most.
 fn through_to<R: Real>(
     frame: &Frame,
+    world: &Ray<R>,
     voxel: [R; 3],
-    way: [R; 3],
+    far: R,
     extinction_at: impl Fn([R; 3]) -> R,
 ) -> R {
     let n = |x: f64| R::from_f64(x);
-    let rows = frame.world_from_voxel;
-    let world = Ray {
-        origin: rows.map(|[x, y, z, w]| dot(vector([x, y, z]), voxel) + R::from_f32(w)),
-        direction: way,
-    };
     let along = Ray {
         origin: voxel,
-        direction: voxel_ray(frame, &world).direction,
+        direction: voxel_ray(frame, world).direction,
     };
-    let [_, reach] = domain_interval(frame, &world, &along);
+    let [_, reach] = domain_interval(frame, world, &along);
+    let reach = reach.min(far);
     let one = n(1.0);
     if reach <= n(0.0) {
         return one;

@@ -4,12 +4,13 @@
 //! S = albedo (sum over lights of p(c) E T + T_sky sky)        E = pi colour,  c between the directions of travel
 //! ```
 //!
+//! and of a point pi colour d^2 times the mean of 1 / r^2 over the segment that the sample stands for.
 //! p is the phase function, T what comes through from a light, T_sky the mean of that over all directions. Medium, lights
 //! and sky are those of paths ([`PathTracing`]): with one bounce they estimate the same picture.
 //!
 //! [`PathTracing`]: super::pathtrace::PathTracing
 
-use super::{Error, Settings, View};
+use super::{Error, Lattice, Settings, View};
 use crate::shaders::FrameFields;
 
 /// How light comes to matter that scatters it once.
@@ -63,6 +64,10 @@ impl View<'_> {
             SingleScattering::Open | SingleScattering::Volume => 0.0,
             SingleScattering::March if self.settings.conformance => f32::MAX,
             SingleScattering::March => DARK,
+        };
+        fields.least_slope = match self.settings.lattice {
+            Lattice::Planes => 0.0,
+            Lattice::Ray | Lattice::Jitter | Lattice::Bresenham => 1.0,
         };
         Ok(())
     }

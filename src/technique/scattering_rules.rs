@@ -1,5 +1,6 @@
 //! What does not go together with single scattering.
 
+use super::pathtrace::{Lamp, LampShape};
 use super::{Error, Filter, Lattice, Mode, Settings, SingleScattering, SkipBy, Technique};
 use crate::picture::ColorSpace;
 use crate::technique::compatibility::refuse;
@@ -59,6 +60,14 @@ impl Settings {
             of,
             &"another phase function, for which there is path tracing",
         )?;
+        let of = "lights that are followed from each sample, or that nothing hinders";
+        let is_grid = scattering == SingleScattering::Volume;
+        let found = "the light volume with a light that has a place";
+        refuse(is_grid && !path.lamps.is_empty(), of, &found)?;
+        let is_disc = |lamp: &Lamp| matches!(lamp.shape, LampShape::Disc { .. });
+        let of = "points and lights of one direction";
+        let found = "a disc that shines, for which there is path tracing";
+        refuse(path.lamps.iter().any(is_disc), of, &found)?;
         let is_wide = path.light_size_degrees > 0.0;
         let of = "lights of one direction, or ones that are followed through a grid";
         let is_volume = scattering == SingleScattering::Volume;

@@ -310,8 +310,17 @@ fn every_command_of_the_page_of_weather_runs() {
 #[test]
 fn every_command_of_the_page_of_path_tracing_runs() {
     let (folder, _, lines) = run_page("docs/pathtrace.md");
-    assert_eq!(lines, 5);
-    for name in ["head.png", "lit.png", "once.png", "near.png", "single.png"] {
+    assert_eq!(lines, 8);
+    for name in [
+        "head.png",
+        "point.png",
+        "lit.png",
+        "once.png",
+        "near.png",
+        "more.png",
+        "head.samples",
+        "single.png",
+    ] {
         assert!(folder.path(name).exists(), "{name}");
     }
 }

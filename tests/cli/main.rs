@@ -44,6 +44,7 @@ mod info;
 mod info_structure;
 #[cfg(unix)]
 mod interrupt;
+mod kept_samples;
 mod large;
 mod left_out;
 mod look;

@@ -46,6 +46,11 @@ fn flags_win_over_the_look_and_change_the_picture() {
         "--surface-scattering 0",
         "--light 0,0,1",
         "--light-size 0",
+        "--point-light 40,12,30",
+        "--point-light 40,12,30,1,0.5,0",
+        "--point-light 40,12,30,1,1,1,9",
+        "--disc-light 40,12,30,9",
+        "--disc-light 40,12,30,9,0,1,0",
         "--f0 0.9",
         "--roughness 0.1",
         "--aperture-radius 4",
@@ -93,6 +98,14 @@ fn what_paths_do_not_go_with_is_refused_by_name() {
         ("--environment=-1,0,0", "sky"),
         ("--density-scale 0", "--density-scale"),
         ("--light-size 120", "90 degrees"),
+        ("--point-light 1,2", "X,Y,Z"),
+        ("--point-light 1,2,3,1,1,1,0", "noise never ends"),
+        ("--point-light 9,9,9 --target 9,9,9", "turned to"),
+        ("--disc-light 1,2,3,0", "radius over 0"),
+        (
+            "--light 1,0,0 --light 0,1,0 --point-light 9,9,9 --point-light 9,9,8 --disc-light 9,9,7,1",
+            "5",
+        ),
         ("--spp 0", "--spp"),
         ("--spp 3 --denoise-picture", "4 or more"),
         ("--surface-scattering=-1", "surfaces"),
@@ -115,9 +128,20 @@ fn what_paths_do_not_go_with_is_refused_by_name() {
         ));
         ran.assert_refused(2, &[said]);
     }
-    let ran = folder
-        .run("render phantom:sphere,n=8 --technique pathtrace --aov depth -o q.exr --size 20x20");
-    ran.assert_refused(2, &["depth"]);
+    let layer = "render phantom:sphere,n=8 --technique pathtrace -o q.exr --size 20x20 --aov";
+    for (words, said) in [
+        ("depth", "depth"),
+        ("noise --device reference", "--device reference"),
+        (
+            "transmittance --environment 1,1,1 --background environment",
+            "--background",
+        ),
+    ] {
+        let ran = folder.run(&format!("{layer} {words}"));
+        ran.assert_refused(2, &[said]);
+    }
+    let ran = folder.run("render phantom:sphere,n=8 -o q.exr --size 20x20 --aov noise");
+    ran.assert_refused(2, &["--technique pathtrace"]);
     let ran = folder.run("render phantom:sphere,n=8 --spp 3 -o q.png --size 20x20");
     ran.assert_done();
     assert!(

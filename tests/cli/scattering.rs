@@ -25,6 +25,9 @@ fn flags_of_the_medium_and_of_light_change_the_picture() {
         "--phase hg:-0.7",
         "--phase rayleigh",
         "--clip 1,0,0,0",
+        "--point-light 40,12,12 --shadows march",
+        "--point-light 40,12,12,1,0,0 --shadows march",
+        "--point-light 40,12,12 --shadows off",
     ] {
         // The last word of a flag counts, and there may be one.
         let scattering = match words {
@@ -86,6 +89,8 @@ fn what_does_not_go_with_it_is_refused_by_name() {
             "--background environment",
         ),
         ("single --shadows march --light-size 3", "look wide"),
+        ("single --point-light 9,9,9", "--shadows march"),
+        ("single --disc-light 9,9,9,1", "--technique pathtrace"),
         ("single --color-space display", "linear light"),
         ("single --phase hg:0.995", "0.99"),
         ("single --albedo 1.5", "light would grow"),

@@ -39,6 +39,8 @@ fn layers_of(shot: &PictureCase) -> Vec<LayerKind> {
         LayerKind::Label => false,
         // Marks over a picture are the command line's.
         LayerKind::Annotation => false,
+        // Of random paths.
+        LayerKind::Noise => false,
         LayerKind::Samples => true,
     })
     .collect()

@@ -16,17 +16,17 @@
 use crate::{
     cli::{
         Error,
-        resume_check::{difference, hash_of},
+        resume_check::{difference, hash_of, hash_voxels},
     },
     picture::write_file,
-    volume::{Volume, Voxels},
+    volume::Volume,
 };
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::{
     collections::BTreeMap,
     fs::{self, File, OpenOptions},
-    hash::{DefaultHasher, Hash, Hasher},
+    hash::Hasher,
     io::{self, Write},
     path::{Path, PathBuf},
 };
@@ -245,18 +245,6 @@ impl Mark {
             hash: hash_of(|hasher| hasher.write(&bytes)),
         })
     }
-}
-
-fn hash_voxels(volume: &Volume, hasher: &mut DefaultHasher) {
-    match &volume.voxels {
-        Voxels::U8(v) => hasher.write(v),
-        Voxels::I8(v) => hasher.write(bytemuck::cast_slice(v)),
-        Voxels::U16(v) => hasher.write(bytemuck::cast_slice(v)),
-        Voxels::I16(v) => hasher.write(bytemuck::cast_slice(v)),
-        Voxels::F16(v) => hasher.write(bytemuck::cast_slice(v)),
-        Voxels::F32(v) => hasher.write(bytemuck::cast_slice(v)),
-    }
-    volume.validity.hash(hasher);
 }
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
 //! Light on what is composited: flags to [`Shading`].
 
+use super::lamps::{DiscLightWord, PointLightWord};
 use super::{Error, Numbers, color::rgb, finite, occlusion::OcclusionWord, shadows::ShadowsWord};
 use crate::{
     shaders::MAX_LIGHTS,
-    technique::{AmbientOcclusion, Light, LightSpace, Mode, Shading, Shadows},
+    technique::{AmbientOcclusion, Light, LightSpace, Mode, Shading, Shadows, pathtrace::Lamp},
 };
 use clap::{Args, ValueEnum};
 use glam::DVec3;
@@ -31,6 +32,17 @@ pub struct LightFlags {
     #[arg(long, value_name = "[camera:]X,Y,Z[,R,G,B]", allow_hyphen_values = true, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub light: Vec<LightWord>,
+    /// A light at a place of the world, of a colour in sRGB numbers (repeatable), as bright where the camera is turned to as a
+    /// --light of that colour: for --scattering single a point, for --technique pathtrace a sphere [default radius: 1/400
+    /// of the diagonal of the volume]
+    #[arg(long, value_name = "X,Y,Z[,R,G,B[,RADIUS]]", allow_hyphen_values = true, help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub point_light: Vec<PointLightWord>,
+    /// A disc at a place of the world that shines to where the camera is turned to, as bright there as a --light of its
+    /// colour (repeatable), for --technique pathtrace
+    #[arg(long, value_name = "X,Y,Z,RADIUS[,R,G,B]", allow_hyphen_values = true, help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub disc_light: Vec<DiscLightWord>,
     /// Gradient magnitude, in values per world length, at which a sample is shaded half as a surface and half evenly;
     /// weaker gradients are shaded more evenly, so that noise does not sparkle [default: 0; by the noise of the volume
     /// where --look auto lights]
@@ -175,6 +187,18 @@ impl LightFlags {
         self.word(mode) == ShadingWord::Phong
     }
 
+    /// Lights that have a place.
+    pub fn lamps(&self) -> Vec<Lamp> {
+        let points = self.point_light.iter().map(|word| word.lamp());
+        let discs = self.disc_light.iter().map(|word| word.lamp());
+        points.chain(discs).collect()
+    }
+
+    /// True where a word names a light.
+    pub fn has_lights(&self) -> bool {
+        !(self.light.is_empty() && self.point_light.is_empty() && self.disc_light.is_empty())
+    }
+
     /// Whether slices lie half way to the light.
     pub fn is_half_angle(&self) -> bool {
         self.shadows == Some(ShadowsWord::HalfAngle)
@@ -285,6 +309,14 @@ impl LightFlags {
         }
         if is_dark && !self.light.is_empty() {
             notes.push("--light has no effect without --shading phong");
+        }
+        if !self.point_light.is_empty() {
+            notes.push(
+                "--point-light has no effect without --technique pathtrace or --scattering single",
+            );
+        }
+        if !self.disc_light.is_empty() {
+            notes.push("--disc-light has no effect without --technique pathtrace");
         }
         if is_dark && self.half_gradient.is_some() {
             notes.push("--half-gradient has no effect without --shading phong");

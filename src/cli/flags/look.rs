@@ -76,7 +76,7 @@ impl SceneFlags {
         path.roughness.get_or_insert(ROUGHNESS);
         self.picture.tone.get_or_insert(ToneWord::Neutral);
         path.denoise_picture |= path.spp.is_none_or(|paths| paths >= LEAST_DENOISED);
-        if self.light.light.is_empty() {
+        if !self.light.has_lights() {
             self.light
                 .light
                 .push(LightWord::of_camera(KEY_LIGHT.into()));

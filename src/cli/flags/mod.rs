@@ -20,6 +20,7 @@ mod inlined;
 mod input;
 mod intermediate;
 mod labels;
+mod lamps;
 mod level_or_height;
 mod levels;
 mod light;

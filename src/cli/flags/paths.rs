@@ -108,7 +108,7 @@ impl PathFlags {
     pub fn path(&self, light: &LightFlags, shows_sky: bool) -> Result<PathTracing, Error> {
         let default = PathTracing::default();
         let mut lights: Vec<Light> = light.light.iter().map(|word| word.light()).collect();
-        if lights.is_empty() && self.environment.is_none() {
+        if !light.has_lights() && self.environment.is_none() {
             lights.push(Light {
                 towards: DVec3::Z,
                 space: LightSpace::Camera,
@@ -134,6 +134,7 @@ impl PathFlags {
             albedo: self.albedo.unwrap_or(default.albedo),
             phase: self.phase.map_or(default.phase, |word| word.0),
             lights,
+            lamps: light.lamps(),
             light_size_degrees: light.light_size.unwrap_or(default.light_size_degrees),
             sky: sky.map(|c| strength * c),
             sky_picture,

@@ -167,6 +167,8 @@ pub enum LayerWord {
     Position,
     /// Unit normal at the depth, in the world towards lower values, three numbers a pixel
     Normal,
+    /// The standard error of luminance of --technique pathtrace
+    Noise,
 }
 
 impl LayerWord {
@@ -179,6 +181,7 @@ impl LayerWord {
             Self::Position => LayerKind::Position,
             Self::Normal => LayerKind::Normal,
             Self::Label => LayerKind::Label,
+            Self::Noise => LayerKind::Noise,
         }
     }
 }

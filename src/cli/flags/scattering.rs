@@ -67,8 +67,8 @@ impl PathFlags {
     pub(super) fn bundle_count(&self, light: &LightFlags) -> u32 {
         // Without a light and a sky there is that of the eye.
         let lights = match self.environment {
-            None => light.light.len().max(1),
-            Some(_) => light.light.len(),
+            None if !light.has_lights() => 1,
+            _ => light.light.len(),
         };
         let lights = match light.shadows {
             None | Some(ShadowsWord::Volume) => lights as u32,
@@ -124,6 +124,18 @@ impl PathFlags {
                 ));
             }
         };
+        if !light.disc_light.is_empty() {
+            return Err(Error::usage(
+                "--scattering single: a disc looks larger the nearer matter is, and --disc-light is for --technique pathtrace",
+                "--point-light is a light of no size",
+            ));
+        }
+        if single == SingleScattering::Volume && !light.point_light.is_empty() {
+            return Err(Error::usage(
+                "--scattering single: --shadows volume follows light that is parallel, and that of --point-light is not",
+                "--shadows march follows it from each sample, --shadows off lets all of it come",
+            ));
+        }
         let light_size_degrees = match single {
             SingleScattering::Volume => light.size()?,
             SingleScattering::Open | SingleScattering::March => settings.path.light_size_degrees,

@@ -123,7 +123,7 @@ impl<'v> Renderer<'v> {
 pub fn passes_of(scene: &Scene, has_layers: bool, max_loop_turns: u32) -> usize {
     let settings = scene.settings;
     let rays = match settings.technique.traces_paths() {
-        true => passes_of_paths(&settings.path, max_loop_turns),
+        true => passes_of_paths(settings.path.samples, max_loop_turns),
         false => settings.rays_per_side.pow(2),
     };
     let rays = rays as usize;

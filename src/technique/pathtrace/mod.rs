@@ -9,6 +9,7 @@
 
 mod denoise;
 mod elementary;
+mod lamp;
 mod majorants;
 mod phase;
 mod random;
@@ -19,6 +20,8 @@ mod sky;
 mod surface;
 
 pub(crate) use denoise::denoised;
+pub(crate) use elementary::turn_of;
+pub use lamp::{Lamp, LampShape};
 pub use phase::Phase;
 pub(crate) use phase::phase_value;
 pub use sky::{SkyError, SkyPicture};
@@ -52,9 +55,11 @@ pub struct PathTracing {
     pub albedo: f64,
     /// Where the medium scatters light to.
     pub phase: Phase,
-    /// At most [`MAX_LIGHTS`]. A light of colour 1 makes a white surface across its way white: its irradiance is pi.
+    /// At most [`MAX_LIGHTS`] with those that have a place. A light of colour 1 makes a white surface across its way white: its irradiance is pi.
     pub lights: Vec<Light>,
-    /// How wide lights look, in degrees, 0 to 90.
+    /// Lights that have a place.
+    pub lamps: Vec<Lamp>,
+    /// How wide `lights` look, in degrees, 0 to 90.
     pub light_size_degrees: f64,
     /// Radiance from all around, linear red, green and blue; or what that of a picture is multiplied by.
     pub sky: [f64; 3],
@@ -103,6 +108,7 @@ impl Default for PathTracing {
             albedo: 1.0,
             phase: Phase::default(),
             lights: Vec::new(),
+            lamps: Vec::new(),
             light_size_degrees: 0.0,
             sky: [0.0; 3],
             sky_picture: None,
@@ -250,7 +256,8 @@ impl View<'_> {
         }
         let half = (0.5 * path.light_size_degrees).to_radians();
         fields.path_light_size = (1.0 - half.cos()) as f32;
-        let (wanted, limit) = (path.lights.len(), MAX_LIGHTS as usize);
+        let wanted = path.lights.len() + path.lamps.len();
+        let limit = MAX_LIGHTS as usize;
         if wanted > limit {
             return Err(Error::TooManyLights { wanted, limit });
         }
@@ -260,6 +267,9 @@ impl View<'_> {
             let [r, g, b] = light.srgb.map(|c| decode_srgb(c) as f32);
             fields.light_directions[i] = way.extend(0.0).as_vec4().to_array();
             fields.light_colors[i] = [r, g, b, 1.0];
+        }
+        for (i, lamp) in (path.lights.len()..).zip(&path.lamps) {
+            self.set_lamp(i, lamp, fields)?;
         }
         Ok(())
     }

@@ -2,6 +2,7 @@
 
 use super::SkyPicture;
 use super::elementary::{around, minus_ln, turned};
+use super::lamp::{is_lamp, light_of_lamp};
 use super::phase::{phase_cosine, phase_value};
 use super::random::random_numbers;
 use super::surface::{reflected, reflection, reflection_density};
@@ -108,6 +109,7 @@ impl<R: Real> Path<R> {
             let numbers = random_numbers::<R>(key);
             let from = walk.world.at(walk.t);
             let at = Collision {
+                place: from,
                 incoming: walk.world.direction,
                 normal: normal_at(of, place, walk.world.direction, numbers[0]),
                 albedo,
@@ -117,13 +119,15 @@ impl<R: Real> Path<R> {
                 path.weight = std::array::from_fn(|c| path.weight[c] * albedo[c]);
             }
             key[2] = path.draw | OF_SKY;
-            let (way, light) = at.light(frame, numbers, key);
+            let (way, light, reach) = at.light(frame, numbers, key);
             if (0..3).any(|c| path.weight[c] * light[c] > zero) {
                 let way = Ray {
                     origin: from,
                     direction: way,
                 };
-                let through = path.through(of, Walk::along(frame, way), &mut key);
+                let mut walk = Walk::along(frame, way);
+                walk.end = walk.end.min(reach);
+                let through = path.through(of, walk, &mut key);
                 path.radiance =
                     std::array::from_fn(|c| path.radiance[c] + path.weight[c] * light[c] * through);
             }
@@ -289,6 +293,8 @@ fn normal_at<R: Real>(
 
 /// Where a path has met matter.
 struct Collision<'a, R> {
+    /// In world space.
+    place: [R; 3],
     /// Of travel.
     incoming: [R; 3],
     /// `None`: in the medium.
@@ -303,16 +309,17 @@ impl<R: Real> Collision<'_, R> {
         frame.path_f0 > 0.0 && self.normal.is_some()
     }
 
-    /// The way to one of the lights, and what it gives if nothing is in the way.
-    fn light(&self, frame: &Frame, numbers: [R; 4], key: [u32; 4]) -> ([R; 3], [R; 3]) {
+    /// The way to one of the lights, what it gives if nothing is in the way, and how far it is.
+    fn light(&self, frame: &Frame, numbers: [R; 4], key: [u32; 4]) -> ([R; 3], [R; 3], R) {
         let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));
         let kinds = frame.light_count + u32::from(self.sky.is_some());
         if kinds == 0 {
-            return ([zero; 3], [zero; 3]);
+            return ([zero; 3], [zero; 3], zero);
         }
         let count = R::from_f64(kinds.into());
         let i = ((numbers[1] * count).to_i32() as u32).min(kinds - 1) as usize;
         let vector = |[x, y, z, _]: [f32; 4]| [x, y, z].map(R::from_f32);
+        let mut reach = R::from_f32(f32::MAX);
         let (way, color) = match self.sky {
             Some(sky) if i == frame.light_count as usize => {
                 let way = sky.drawn(frame, random_numbers(key));
@@ -327,6 +334,11 @@ impl<R: Real> Collision<'_, R> {
                     false => [zero; 3],
                 };
                 (way, color)
+            }
+            _ if is_lamp(frame, i) => {
+                let lamp = light_of_lamp(frame, i, self.place, [numbers[2], numbers[3]]);
+                reach = lamp.reach;
+                (lamp.way, lamp.color)
             }
             _ => {
                 let cosine = one - numbers[2] * R::from_f32(frame.path_light_size);
@@ -345,7 +357,8 @@ impl<R: Real> Collision<'_, R> {
                 [R::from_f64(std::f64::consts::PI) * phase; 3]
             }
         };
-        (way, std::array::from_fn(|c| count * part[c] * color[c]))
+        let light = std::array::from_fn(|c| count * part[c] * color[c]);
+        (way, light, reach)
     }
 
     /// How often the path goes on in a direction, per steradian.

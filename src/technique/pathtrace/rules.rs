@@ -55,6 +55,12 @@ impl Settings {
         let of = "linear light";
         let is_display = self.color_space == ColorSpace::Display;
         refuse(is_display, PATHS, of, "display numbers")?;
+        for lamp in &self.path.lamps {
+            let radius = lamp.shape.radius().unwrap_or(1.0);
+            let name = "the radius of a light in path tracing";
+            let wanted = "a length over 0: of a point's light the noise never ends";
+            Error::unless(radius > 0.0, name, wanted, radius)?;
+        }
         self.path.check()
     }
 
@@ -119,6 +125,15 @@ impl PathTracing {
         for g in cosines {
             let name = "the mean cosine of a phase function";
             Error::unless(g.abs() <= 0.99, name, "-0.99 to 0.99", g)?;
+        }
+        for lamp in &self.lamps {
+            let radius = lamp.shape.radius().unwrap_or(0.0);
+            let is_right = radius >= 0.0 && radius.is_finite();
+            let name = "the radius of a light";
+            Error::unless(is_right, name, "a length of 0 or more", radius)?;
+            let far = lamp.place.length_squared();
+            let name = "the place of a light";
+            Error::unless(far.is_finite(), name, "three lengths", far.sqrt())?;
         }
         let size = self.light_size_degrees;
         let is_right = (0.0..=90.0).contains(&size);

@@ -2,6 +2,7 @@
 //! for ever. SE: the standard error of a mean.
 
 mod camera;
+mod lamps;
 mod noise;
 mod sky;
 mod surfaces;
@@ -13,7 +14,7 @@ use stratavox::color::encode_srgb;
 use stratavox::offscreen::{self, Renderer};
 use stratavox::picture::Picture;
 use stratavox::scene::{Beside, Scene};
-use stratavox::technique::pathtrace::{Lens, PathTracing, Phase, SkyPicture};
+use stratavox::technique::pathtrace::{Lamp, LampShape, Lens, PathTracing, Phase, SkyPicture};
 use stratavox::technique::{ClipPlane, Filter, Light, LightSpace, Settings, Technique};
 use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
 use stratavox::volume::{Rescale, Volume, Voxels};
@@ -399,9 +400,26 @@ fn the_shader_traces_the_paths_of_its_reference() {
         shows_sky: true,
         ..coated.clone()
     };
+    let by_lamps = PathTracing {
+        lights: Vec::new(),
+        lamps: vec![
+            Lamp {
+                place: dvec3(30.0, 40.0, 10.0),
+                shape: LampShape::Sphere { radius: Some(9.0) },
+                srgb: [1.0, 0.8, 0.6],
+            },
+            Lamp {
+                place: dvec3(45.0, -3.0, 30.0),
+                shape: LampShape::Disc { radius: 12.0 },
+                srgb: [0.4, 0.8, 1.0],
+            },
+        ],
+        ..lit()
+    };
     for (name, volume, path, conformance) in [
         ("f32", floats.clone(), lit(), true),
         ("coated, by a lens", floats.clone(), coated, true),
+        ("by lamps", floats.clone(), by_lamps, true),
         ("under a picture", floats.clone(), under_a_picture, true),
         ("u8", of_codes(&floats, u8::MAX.into()), lit(), false),
         ("u16", of_codes(&floats, u16::MAX), lit(), false),

@@ -5,7 +5,7 @@ use crate::shared::device;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use stratavox::offscreen::Renderer;
-use stratavox::picture::Picture;
+use stratavox::picture::{LayerKind, Picture};
 use stratavox::technique::pathtrace::PathTracing;
 
 /// Taking it out is worth more than twice the paths.
@@ -33,6 +33,54 @@ fn noise_that_is_taken_out_is_no_detail() {
     let [before, after] = [false, true].map(|denoise| error(&of(16, 0, denoise)));
     println!("{before} {after}");
     assert!(after < before / 2.0_f64.sqrt(), "{before} {after}");
+}
+
+/// Of each pixel: the sum of squares over pixels is that of the picture, and errors against many more paths are as large. What
+/// comes through is what no path has met.
+#[test]
+fn layers_say_the_error_of_each_pixel_and_what_comes_through() {
+    let (volume, camera) = (blobs(), around_blobs());
+    let function = matter([0.9, 0.7, 0.4], &[(0.1, 0.0), (0.4, 1.5), (1.0, 0.2)]);
+    let mut renderer = Renderer::new(device(), &volume).expect("a renderer");
+    let mut of = |samples, seed| {
+        let settings = settings(PathTracing {
+            samples,
+            seed,
+            ..lit()
+        });
+        let scene = scene(&volume, &function, &camera, &settings, [30, 25]);
+        let kinds = [LayerKind::Noise, LayerKind::Transmittance];
+        let picture = renderer.render(&scene, &kinds).expect("a picture").picture;
+        (picture, renderer.traced())
+    };
+    let (picture, traced) = of(64, 0);
+    let [noise, through] = &picture.layers[..] else {
+        panic!("two layers: {:?}", picture.layers.len());
+    };
+    let kinds = [noise.kind, through.kind];
+    assert_eq!(kinds, [LayerKind::Noise, LayerKind::Transmittance]);
+    for (pixel, through) in picture.pixels.iter().zip(&through.values) {
+        assert_eq!(1.0 - pixel[3], *through);
+    }
+    let y = |p: &[f32; 4]| {
+        0.2126 * f64::from(p[0]) + 0.7152 * f64::from(p[1]) + 0.0722 * f64::from(p[2])
+    };
+    let light: f64 = picture.pixels.iter().map(|p| y(p).powi(2)).sum();
+    let variance: f64 = noise.values.iter().map(|&x| f64::from(x).powi(2)).sum();
+    let wanted = traced.noise.expect("several blocks");
+    assert!(((variance / light).sqrt() / wanted - 1.0).abs() < 1e-5);
+    let (truth, _) = of(256, 9);
+    let of_pixels = picture.pixels.iter().zip(&truth.pixels).zip(&noise.values);
+    let lit = of_pixels.filter(|(_, noise)| **noise > 0.0);
+    let (mut squares, mut count) = (0.0, 0.0);
+    for ((a, b), &noise) in lit {
+        squares += ((y(a) - y(b)) / f64::from(noise)).powi(2) / (1.0 + 1.0 / 4.0);
+        count += 1.0;
+    }
+    // By B = 11 blocks or more, of Gauss's curve: (B - 1) / (B - 3) <= 1.25; of light that is rare the blocks know less.
+    let mean: f64 = squares / count;
+    println!("{mean} over {count} pixels");
+    assert!(count > 200.0 && (0.9..1.6).contains(&mean), "{mean}");
 }
 
 /// The picture of `--noise` is that of as many paths, and its noise is the error against many more.

@@ -11,7 +11,7 @@ use stratavox::gpu::Caps;
 use stratavox::offscreen::{self, Renderer, reference};
 use stratavox::picture::ColorSpace;
 use stratavox::scene::{Beside, Channel, Scene};
-use stratavox::technique::pathtrace::{PathTracing, Phase, SkyPicture};
+use stratavox::technique::pathtrace::{Lamp, LampShape, PathTracing, Phase, SkyPicture};
 use stratavox::technique::{
     AmbientOcclusion, Error, Filter, Lattice, Mode, Role, Settings, Shading, SingleScattering,
     Technique,
@@ -51,6 +51,20 @@ fn under_a_sky() -> PathTracing {
     }
 }
 
+/// A driver that counts the turns of loops follows one of them from each sample.
+fn by_points(count: usize) -> PathTracing {
+    let point = |voxel| Lamp {
+        place: GRID().world_from_voxel.transform_point3(voxel),
+        shape: LampShape::Sphere { radius: None },
+        srgb: [1.0, 0.9, 0.8],
+    };
+    PathTracing {
+        lamps: [dvec3(40.0, -9.0, 3.0), dvec3(11.0, 8.0, 6.0)].map(point)[..count].to_vec(),
+        lights: Vec::new(),
+        ..lit()
+    }
+}
+
 fn field(has_holes: bool) -> Volume {
     let mut volume = volume_of(GRID().dims, sheared_affine(), waves);
     if has_holes {
@@ -68,6 +82,8 @@ fn every_way_of_light_is_that_of_its_reference() {
         (SingleScattering::March, lit()),
         (SingleScattering::Volume, under_a_sky()),
         (SingleScattering::March, under_a_sky()),
+        (SingleScattering::Open, by_points(2)),
+        (SingleScattering::March, by_points(1)),
     ];
     let transfer = ramps();
     for has_holes in [false, true] {
@@ -243,7 +259,13 @@ fn what_has_no_light_to_scatter_is_refused_by_name() {
         }
         error
     };
-    let changes: [(&str, Change); 17] = [
+    let changes: [(&str, Change); 19] = [
+        ("followed from each sample", &|s| s.path = by_points(2)),
+        ("a disc", &|s| {
+            s.single_scattering = Some(SingleScattering::Open);
+            s.path = by_points(2);
+            s.path.lamps[0].shape = LampShape::Disc { radius: 1.0 };
+        }),
         ("ray casting", &|s| s.technique = Technique::Slices3d),
         ("composite", &|s| s.mode = Mode::Mip),
         ("composite", &|s| s.mode = Mode::Mida),
