@@ -109,8 +109,10 @@ impl KeptSamples {
         let sums = match self.past {
             None => PathSums::default(),
             Some(past) => {
+                // What says most comes first: all else may follow from it.
                 let size = |of: &Value| of["scene"]["picture"]["size"].clone();
                 let why = difference("scene.picture.size", &size(&past.of), &size(&own))
+                    .or_else(|| difference("volume", &past.of["volume"], &own["volume"]))
                     .or_else(|| difference("", &past.of, &own));
                 match (why, past.sums) {
                     (None, Some(sums)) => sums,

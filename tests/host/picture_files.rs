@@ -77,6 +77,7 @@ fn npy_files_are_what_numpy_writes() {
         [
             "out.depth.npy",
             "out.label.npy",
+            "out.noise.npy",
             "out.normal.npy",
             "out.npy",
             "out.position.npy",
@@ -142,6 +143,7 @@ fn exr_files_hold_the_same_floats_and_a_channel_for_each_layer() {
             "R",
             "depth",
             "label",
+            "noise",
             "normal.X",
             "normal.Y",
             "normal.Z",
