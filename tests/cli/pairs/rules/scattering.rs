@@ -5,7 +5,7 @@ use super::{Rule, no_meaning, not_built, of};
 /// In their order.
 pub const RULES: &[Rule] = &[
     no_meaning(
-        "--scattering single is for --technique raycast",
+        "--bounces 1 scatters once too",
         "paths scatter as often as `--bounces` says, once too",
     ),
     of(
