@@ -1,5 +1,5 @@
 //! The matrix of `docs/matrix.md`: every cell is drawn by the device as by its CPU reference, or refused by both with the same
-//! reason, and the page says which.
+//! reason, and the page says which. Of wide filters one by turns stands for all.
 
 use crate::cells::{DENOISE, FEATURES, FILTERS, Feature, MODES, Matter, Seen, settings};
 use crate::page;
@@ -70,6 +70,9 @@ fn assert_cells(technique: Technique) {
         for (mode, _) in MODES {
             for (filter, _) in FILTERS {
                 nth += 1;
+                if is_left(filter, nth) {
+                    continue;
+                }
                 let mut settings = settings(technique, mode, filter, feature);
                 // Kept gradients are filtered by the device.
                 settings.conformance = settings.gradient_storage != GradientStorage::Precomputed;
@@ -87,6 +90,12 @@ fn assert_cells(technique: Technique) {
         100
     };
     assert!(drawn > most, "{technique:?}: only {drawn} cells are drawn");
+}
+
+/// Of five filters that are wider than linear one is drawn, by turns: rows have seven of all filters, so that it is another
+/// one in each mode.
+fn is_left(filter: Filter, nth: usize) -> bool {
+    !matches!(filter, Filter::Nearest | Filter::Linear) && !nth.is_multiple_of(5)
 }
 
 /// Drawn as computed, or refused by all three in the same words.

@@ -170,7 +170,7 @@ fn widget(numbers: &mut Numbers, [low, high]: [f64; 2]) -> Widget {
 
 #[test]
 fn functions_of_gradients_are_drawn_the_same_whatever_is_left_out() {
-    compare_many(balls, 3, 12, 0.8, |numbers, settings, function, volume| {
+    compare_many(balls, 3, 8, 0.8, |numbers, settings, function, volume| {
         let range = volume.value_range;
         let opacity = |(value, opacity)| OpacityPoint { value, opacity };
         if numbers.below(2) == 0 {
@@ -198,7 +198,7 @@ fn functions_of_gradients_are_drawn_the_same_whatever_is_left_out() {
 /// A contour reaches as far as the gradient takes it, and no farther than the values around a sample let it be steep.
 #[test]
 fn contours_are_left_out_where_no_value_comes_near_them() {
-    compare_many(balls, 13, 14, 0.7, |numbers, settings, function, volume| {
+    compare_many(balls, 13, 8, 0.7, |numbers, settings, function, volume| {
         let [low, high] = volume.value_range;
         function.opacity.clear();
         let mut contour = || Widget {
@@ -232,7 +232,7 @@ fn slabs_are_the_same_whatever_rays_leave_out() {
 #[test]
 fn maxima_that_hang_on_what_lies_before_them_are_the_same_whatever_is_left_out() {
     let modes = [Mode::Mida, Mode::Lmip, Mode::AttenuatedMip];
-    compare_many(towers, 9, 16, 0.95, |numbers, settings, _, volume| {
+    compare_many(towers, 9, 10, 0.95, |numbers, settings, _, volume| {
         let [low, high] = volume.value_range;
         let at = |part: f64| low + part * (high - low);
         settings.mode = modes[numbers.below(3)];

@@ -11,8 +11,8 @@ use std::fmt::Write as _;
 const HEAD: &str = "# Pairs of features
 
 Every pair of features of the command line: whether it is drawn, and why not. Printed by `make pairs`, which runs the program for
-each pair on a volume of 20^3 voxels; `tests/cli/pairs` holds this page against what the program does, and wants that a picture is not
-empty and that both features change it. [matrix.md](matrix.md) has every feature in every technique, mode and filter.
+each pair on a volume of 20^3 voxels; `tests/cli/pairs` holds this page against what the program does, of pairs that are drawn for one of
+three, and wants that a picture is not empty and that both features change it. [matrix.md](matrix.md) has every feature in every technique, mode and filter.
 
 What holds without a flag is no feature: ray casting, composites, the linear filter and perspective are in all pairs without a flag
 for them. The mode `minip` goes with what `mip` goes with, and `attenuated-mip` with what `lmip` goes with.
@@ -73,6 +73,13 @@ pub fn page(found: &[Vec<Outcome>]) -> String {
         writeln!(text, "{}. *{kind}*, {count} {of}: {}", i + 1, rule.why).expect("text");
     }
     text
+}
+
+/// Whether the page says of a pair that it is drawn as it stands.
+pub fn says_drawn(page: &str, first: usize, second: usize) -> bool {
+    let begin = format!("| {} {} | ", first + 1, FEATURES[first].name);
+    let row = page.lines().find_map(|line| line.strip_prefix(&begin));
+    row.and_then(|row| row.split(" | ").nth(second)) == Some("+")
 }
 
 /// True where a rule is the reason.

@@ -87,13 +87,18 @@ fn line_of(first: usize, second: usize) -> Option<Line> {
     })
 }
 
-/// The outcome of every pair, `[first][second]` with `second < first`.
-pub fn outcomes() -> Vec<Vec<Outcome>> {
+/// The outcome of every pair, `[first][second]` with `second < first`; those that are known to be drawn are not drawn again.
+pub fn outcomes(is_known: impl Fn(usize, usize) -> bool) -> Vec<Vec<Outcome>> {
+    let is_run = |line: &Line| {
+        line.second
+            .is_some_and(|second| !is_known(line.first, second))
+    };
     let of_row = |first| (0..first).map(move |second| line_of(first, second));
     let lines: Vec<Vec<_>> = (0..FEATURES.len())
         .map(|first| of_row(first).collect())
         .collect();
-    let pairs: Vec<Line> = lines.iter().flatten().flatten().copied().collect();
+    let all = lines.iter().flatten().flatten().copied();
+    let pairs: Vec<Line> = all.filter(is_run).collect();
     // What each feature of a pair draws alone of the same input: where that is what both draw, the other does nothing.
     let mut singles: Vec<Line> = Vec::new();
     for single in pairs.iter().flat_map(|pair| alone(*pair)) {
@@ -114,7 +119,8 @@ pub fn outcomes() -> Vec<Vec<Outcome>> {
     let mut found =
         in_parallel(&pairs, |&line, place| outcome(&folder, place, line, &drawn)).into_iter();
     let mut of_line = |line: &Option<Line>| match line {
-        Some(_) => found.next().expect("as many as lines"),
+        Some(line) if is_run(line) => found.next().expect("as many as lines"),
+        Some(_) => Outcome::Drawn,
         None => Outcome::NoPair,
     };
     lines
