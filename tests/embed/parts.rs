@@ -119,10 +119,11 @@ fn parts_together_are_the_frame() {
     };
     for caps in [Caps::UNLIMITED, bricks] {
         let host = Host::with_caps(caps);
-        // What the light sees lies in one brick.
+        // What the light sees lies in one brick, and so do splats.
         let is_cut = caps != Caps::UNLIMITED;
+        let is_whole = |of: &Settings| of.shading.is_some() || of.technique == Technique::Splat;
         let ways = ways().into_iter();
-        for settings in ways.filter(|settings| !is_cut || settings.shading.is_none()) {
+        for settings in ways.filter(|settings| !is_cut || !is_whole(settings)) {
             let stage = stage(&settings);
             let mut renderer = renderer(&host, &stage);
             let wanted = whole(&host, &mut renderer, &stage);
