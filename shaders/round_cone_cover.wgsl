@@ -30,7 +30,7 @@ const CORNERS = array<vec2<u32>, 6>(
 // What rounding may move a side by: pixels, and parts of its place.
 const COVER_PIXELS: f32 = 1.0;
 const COVER_PART: f32 = 1e-3;
-// Nearer to the plane of the eye, in parts of all lengths there are, f32 does not tell where a sphere ends.
+// Where the plane of the eye is so near, in parts of all lengths there are, f32 does not tell where a sphere ends.
 const LEAST_DEPTH_PART: f32 = 1e-3;
 
 struct Sides {
