@@ -79,9 +79,9 @@ pub const ANSWERS: &[(&str, Fault, &str)] = &[
     (
         "slabs are lit half a voxel beside their middles",
         Shader(
-            "lib/material_slab.wgsl",
-            "slab.middle, slab",
-            "slab.middle + 0.5, slab",
+            "lib/unroll_lit_slabs.wgsl",
+            "slab.sample.middle, slab",
+            "slab.sample.middle + 0.5, slab",
         ),
         "reference.raycast.ray.composite.lit_slabs.linear_fetch.perspective",
     ),
