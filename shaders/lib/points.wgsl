@@ -23,8 +23,11 @@ fn shown(srgb: vec3<f32>) -> vec3<f32> {
 }
 
 // Interpolates numbers[first .. first + count] at a value: colour points (value, red, green, blue) come first, then
-// opacity points (value, opacity, 0, 0).
+// opacity points (value, opacity, 0, 0). Of none all are 0: what stands there is something else.
 fn between_points(value: f32, first: u32, count: u32, is_step: u32) -> vec4<f32> {
+    if count == 0u {
+        return vec4(0.0);
+    }
     // Invariant: points before `low` are at or below the value, points from `high` on are above it.
     var low = first;
     var high = first + count;
