@@ -792,6 +792,49 @@ typedef struct sv_light {
     double srgb[3];
 } sv_light;
 
+// What SV_TECHNIQUE_PATHTRACE traces. All zero: one path a pixel and frame up to 64, light that is scattered as often as it is,
+// to all sides alike.
+typedef struct sv_path_tracing {
+    // `sizeof(sv_path_tracing)`.
+    uint32_t struct_size;
+    // NULL.
+    const void *next;
+    // Paths a pixel, at most: frames after it show the same. 0 is 64.
+    uint32_t samples;
+    // So many more in each frame, at most 8, of a driver that counts the turns of loops 4. 0 is 1.
+    uint32_t samples_per_frame;
+    // Other numbers, other noise.
+    uint32_t seed;
+    // How often light is scattered at most. 0: as often as it is.
+    uint32_t bounces;
+    // Not 0: it is not scattered, and matter shines in its colours.
+    uint32_t is_unscattered;
+    // Not 0: matter scatters light as particles far smaller than the wavelength do (Rayleigh).
+    uint32_t is_rayleigh;
+    // What extinctions are multiplied by. 0 is 1.
+    double density;
+    // What albedos are multiplied by, 0 to 1. 0 is 1.
+    double albedo;
+    // The mean cosine of the phase function (Henyey and Greenstein), -0.99 to 0.99: positive forward.
+    double mean_cosine;
+    // That of a second one.
+    double second_mean_cosine;
+    // The part of light that is scattered by the second one, 0 to 1.
+    double second_part;
+    // How wide lights look, in degrees, 0 to 90.
+    double light_size_degrees;
+    // Radiance from all around, linear red, green and blue. Without it and without `sv_settings.lights` a white light is
+    // carried by the eye.
+    double sky[3];
+    // How much of matter is surface: a collision is one with a surface by the chance 1 - exp(-surface g), g the gradient
+    // in ranges of values a smallest spacing.
+    double surface;
+    // Reflectance of surfaces at right angles, 0 to 1. 0: they reflect as Lambert says.
+    double f0;
+    // How rough the coat of surfaces is, 0.05 to 1. 0 is 0.4.
+    double roughness;
+} sv_path_tracing;
+
 // What to compute. All zero: a composite by rays, one sample a voxel.
 typedef struct sv_settings {
     // `sizeof(sv_settings)`.
@@ -862,6 +905,8 @@ typedef struct sv_settings {
     uint32_t jitter_frame;
     // SV_TECHNIQUE_SHEAR_WARP: rays a voxel along each side of the plane. 0 is 1; less than 0: as fine as the picture.
     double rays_per_voxel;
+    // SV_TECHNIQUE_PATHTRACE: what it traces, under `lights`; or NULL.
+    const struct sv_path_tracing *paths;
 } sv_settings;
 
 // Voxels, x fastest, then y, then z. `value = slope stored + intercept`.
@@ -1175,6 +1220,18 @@ sv_status sv_submitter_update_in_parts(sv_submitter submitter,
                                        const struct sv_pacing *pacing,
                                        uint32_t *is_done,
                                        struct sv_diagnostic *diagnostic);
+
+// Of how many paths a pixel the picture of the last recorded frame is the mean (SV_TECHNIQUE_PATHTRACE). Another camera,
+// function, volume, size or settings, and an update of the volume begin anew.
+// Threads: one at a time for one renderer.
+sv_status sv_renderer_paths_traced(sv_renderer renderer,
+                                   uint32_t *paths,
+                                   struct sv_diagnostic *diagnostic);
+
+// The next frame begins with the first path: where what the host has drawn has moved before the volume, and where a frame
+// that was recorded will not be submitted. Threads: one at a time for one renderer.
+sv_status sv_renderer_restart_paths(sv_renderer renderer,
+                                    struct sv_diagnostic *diagnostic);
 
 // Records the copy of what lies under a pixel, for sv_renderer_pick when the frame is done.
 // As sv_renderer_record, after it.

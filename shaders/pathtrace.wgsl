@@ -8,7 +8,7 @@
 // The picture is the mean over paths. One loop over events: lanes that have ended a path go on with the next.
 // CPU reference: src/technique/pathtrace/reference.rs.
 
-#import ray
+#import host_depth
 #import drawn_tile
 #import filter_{filter}
 #import mask
@@ -24,7 +24,9 @@
 #import sky
 #import lamp
 
-// Mean radiance of paths, and which part of them has met matter.
+// Mean radiance of paths, and which part of them has met matter: of n paths behind b others
+//
+//     mean += (sum of the n - n mean) / (b + n)
 @group(0) @binding(6) var picture: texture_storage_2d<rgba32float, read_write>;
 
 // What an invocation is at.
@@ -102,6 +104,9 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
             sample++;
             let numbers = random_numbers(key);
             walk = walk_along(through_lens(pixel_ray(vec2<f32>(pixel) + numbers.xy), numbers.zw));
+            let visible = visible_interval(vec2(walk.t, walk.end), walk.world, vec2<f32>(pixel));
+            walk.t = visible.x;
+            walk.end = visible.y;
             path = Path(vec3(1.0), vec3(0.0), 0u, 1u, false, 0.0);
             state = PATH;
         }
@@ -174,7 +179,12 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
             sum += vec4(path.radiance, f32(path.has_met));
         }
     }
-    textureStore(picture, pixel, sum / f32(frame.path_count));
+    var mean = vec4(0.0);
+    if frame.path_before != 0u {
+        mean = textureLoad(picture, pixel);
+    }
+    let count = f32(frame.path_count);
+    textureStore(picture, pixel, mean + (sum - count * mean) / (f32(frame.path_before) + count));
 }
 
 // Rays through a thin lens meet where they meet the plane of focus.

@@ -286,7 +286,7 @@ impl<'a> Scene<'a> {
             value_range: self.volume.value_range,
             smallest_spacing: self.volume.grid().smallest_spacing(),
         };
-        self.settings.path.tell(&medium, frame);
+        self.settings.path.fields_of(&medium).tell(frame);
     }
 
     /// Between which values samples look alike, where steps adapt to that.

@@ -129,7 +129,8 @@ fn assert_nothing_is_taken(host: &Host, settings: &Settings) {
     // Slices that face neither eye nor light have none, and are behind nothing; nor have pixels that are means of four rays.
     let is_warped = stage.settings.technique == Technique::ShearWarp;
     let is_half = stage.settings.is_half_angle() || is_warped;
-    let has_depth = stage.settings.mode.has_depth() && !is_half;
+    let is_mean = is_half || stage.settings.technique == Technique::Pathtrace;
+    let has_depth = stage.settings.mode.has_depth() && !is_mean;
     let inside = RendererDesc {
         settings: stage.settings.clone(),
         target: TargetClass {
@@ -220,7 +221,11 @@ fn a_vector_is_counted() {
 #[test]
 fn a_frame_takes_nothing_from_the_heap() {
     let host = Host::new();
-    for settings in all_settings() {
+    let of_paths = Settings {
+        technique: Technique::Pathtrace,
+        ..Settings::default()
+    };
+    for settings in all_settings().into_iter().chain([of_paths]) {
         assert_nothing_is_taken(&host, &settings);
     }
 }

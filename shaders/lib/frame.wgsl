@@ -224,8 +224,9 @@ struct Frame {
     // Scattered points: which of the list of a tile this recording takes.
     points_first: u32,
     points_end: u32,
-    // Path tracing: the first path of each pixel in this recording, how many, which random numbers they have, and how often
-    // they may be scattered.
+    // Path tracing: how many paths of each pixel the picture is the mean of already, the first path in this recording, how
+    // many, which random numbers they have, and how often they may be scattered.
+    path_before: u32,
     path_first: u32,
     path_count: u32,
     path_seed: u32,

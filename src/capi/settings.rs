@@ -1,5 +1,6 @@
 //! What to compute.
 
+use super::paths::{paths, sv_path_tracing};
 use super::status::{Failure, number};
 use super::structure::{self, Versioned};
 use super::words::word;
@@ -117,6 +118,8 @@ pub struct sv_settings {
     pub jitter_frame: u32,
     /// SV_TECHNIQUE_SHEAR_WARP: rays a voxel along each side of the plane. 0 is 1; less than 0: as fine as the picture.
     pub rays_per_voxel: f64,
+    /// SV_TECHNIQUE_PATHTRACE: what it traces, under `lights`; or NULL.
+    pub paths: *const sv_path_tracing,
 }
 
 // SAFETY: as the trait wants it.
@@ -160,6 +163,7 @@ pub(super) unsafe fn settings(
             )?,
         )
     };
+    let lights = lights.iter().map(light).collect::<Result<Vec<_>, _>>()?;
     let or = |number: f64, default: f64| if number == 0.0 { default } else { number };
     let samples = or(c.samples_per_voxel, 1.0);
     let is_right = samples > 0.0 && samples <= MOST_SAMPLES_PER_VOXEL;
@@ -188,8 +192,10 @@ pub(super) unsafe fn settings(
         clip_planes: planes.iter().map(plane).collect::<Result<_, _>>()?,
         shading: match c.is_lit {
             0 => None,
-            _ => Some(shading(&c, lights)?),
+            _ => Some(shading(&c, lights.clone())?),
         },
+        // SAFETY: the caller's promise.
+        path: unsafe { paths(c.paths, lights)? },
         per_mode: PerMode {
             unit_values: match c.unit_values == [0.0; 2] {
                 true => range,
@@ -273,7 +279,14 @@ fn crop(c: &sv_settings) -> Result<Option<[DVec3; 2]>, Failure> {
     Ok(Some([min, max]))
 }
 
-fn shading(c: &sv_settings, lights: &[sv_light]) -> Result<Shading, Failure> {
+fn light(light: &sv_light) -> Result<Light, Failure> {
+    let mut channels = light.srgb.iter();
+    channels.try_for_each(|&channel| share("sv_light.srgb", channel))?;
+    let towards = direction("sv_light.towards", light.towards)?;
+    Ok(Light::of_world(towards, light.srgb))
+}
+
+fn shading(c: &sv_settings, lights: Vec<Light>) -> Result<Shading, Failure> {
     let default = Shading::default();
     let parts = [c.ambient, c.diffuse, c.specular, c.shininess];
     let [ambient, diffuse, specular, shininess] = match parts == [0.0; 4] {
@@ -297,20 +310,12 @@ fn shading(c: &sv_settings, lights: &[sv_light]) -> Result<Shading, Failure> {
         let is_right = found >= 0.0 && found.is_finite();
         number(&format!("sv_settings.{name}"), "0 or more", found, is_right)?;
     }
-    let light = |light: &sv_light| {
-        let mut channels = light.srgb.iter();
-        channels.try_for_each(|&channel| share("sv_light.srgb", channel))?;
-        Ok(Light::of_world(
-            direction("sv_light.towards", light.towards)?,
-            light.srgb,
-        ))
-    };
     Ok(Shading {
         ambient,
         diffuse,
         specular,
         shininess,
-        lights: lights.iter().map(light).collect::<Result<_, Failure>>()?,
+        lights,
         ..default
     })
 }

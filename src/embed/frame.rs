@@ -2,6 +2,7 @@
 
 use super::function::Function;
 use super::pass::Pass;
+use super::paths::Traced;
 use super::{Error, HostDepthImage, Volume};
 use crate::camera::Camera;
 use crate::gpu::{Bindings, Blocks, Buffer, Gpu, Memory, ParameterRing, Resource};
@@ -18,7 +19,7 @@ pub(super) const PICK_BYTES: u64 = 32;
 /// What one frame in flight has to itself.
 #[derive(Debug)]
 pub(super) struct Frame {
-    /// What the picture is gathered in, where it is not drawn into the host's target.
+    /// What the picture is gathered in, where it is not drawn into the host's target and does not go on from frame to frame.
     pub picture: Option<Canvas>,
     /// What rays leave that look for the depth of slices.
     pub slice_depth: Option<Canvas>,
@@ -83,6 +84,8 @@ pub(super) struct Sets {
 pub(super) struct Recorded {
     /// The camera, and which copy of the volume. `None`: nothing that may be drawn.
     pub shot: Option<(Camera, usize)>,
+    /// What the picture is the mean of, where it is one of paths.
+    pub traced: Option<Traced>,
     /// Bricks in the order of the picture.
     pub picture: Vec<BrickPass>,
     /// Bricks of the depth of slices, from front to back.
@@ -101,6 +104,10 @@ pub(super) struct Given<'a> {
     pub volume: &'a Volume,
     pub function: &'a Function,
     pub host_depth: Option<HostDepthImage>,
+    /// Of a picture of the sky.
+    pub sky: Option<&'a Buffer>,
+    /// What all frames add up in, where they do.
+    pub mean: Option<&'a Canvas>,
 }
 
 impl Recorded {
@@ -108,6 +115,7 @@ impl Recorded {
     pub fn with_room(recordings: usize) -> Self {
         Self {
             shot: None,
+            traced: None,
             picture: Vec::with_capacity(recordings),
             depth: Vec::with_capacity(recordings),
             order: Vec::with_capacity(recordings),
@@ -127,20 +135,27 @@ pub(super) struct FrameSize {
     pub is_picked: bool,
 }
 
+impl Given<'_> {
+    /// What a canvas is made for, beside that of another frame.
+    pub fn canvas<'c>(&self, size: FrameSize, beside: Option<&'c Canvas>) -> CanvasDesc<'c> {
+        let grid = self.volume.grid();
+        CanvasDesc {
+            extent: size.extent,
+            dims: grid.dims,
+            intermediate_room: intermediate_room(grid, self.settings, size.extent),
+            keeps_layers: size.keeps_layers,
+            beside,
+        }
+    }
+}
+
 impl Frame {
     /// Images and descriptor sets; lists that no frame leaves behind are shared with the first one.
     pub fn new(given: &Given, size: FrameSize, first: Option<&Self>) -> Result<Self, Error> {
         let pass = given.pass;
-        let desc = |beside| CanvasDesc {
-            extent: size.extent,
-            dims: given.volume.grid().dims,
-            intermediate_room: intermediate_room(given.volume.grid(), given.settings, size.extent),
-            keeps_layers: size.keeps_layers,
-            beside,
-        };
-        let of_picture = desc(first.and_then(|frame| frame.picture.as_ref()));
-        let picture = pass.picture.as_ref();
-        let of_depth = desc(first.and_then(|frame| frame.slice_depth.as_ref()));
+        let of_picture = given.canvas(size, first.and_then(|frame| frame.picture.as_ref()));
+        let picture = pass.picture.as_ref().filter(|_| given.mean.is_none());
+        let of_depth = given.canvas(size, first.and_then(|frame| frame.slice_depth.as_ref()));
         let slice_depth = pass.slice_depth.as_ref();
         let readback = || {
             let usage = vk::BufferUsageFlags::TRANSFER_DST;
@@ -179,11 +194,12 @@ impl Frame {
         let pass = given.pass;
         let depth = given.host_depth;
         let depth = depth.map(|image| Resource::Texture(image.view, image.layout));
+        let picture = given.mean.or(self.picture.as_ref());
         let mut sets = Sets::default();
         for copy in given.volume.copies() {
             let bricks = 0..copy.bricks().len();
             let bricks: Vec<_> = bricks.map(|brick| inputs(given, copy, brick)).collect();
-            if let (Some(gather), Some(canvas)) = (&pass.picture, &self.picture) {
+            if let (Some(gather), Some(canvas)) = (&pass.picture, picture) {
                 sets.picture.push(gather.bind(canvas, &bricks, depth)?);
             }
             if let (Some(gather), Some(canvas)) = (&pass.slice_depth, &self.slice_depth) {
@@ -194,7 +210,7 @@ impl Frame {
                 sets.in_target.push(bound.collect::<Result<_, _>>()?);
             }
         }
-        if let (Some(resolve), Some(canvas)) = (&pass.resolve, &self.picture) {
+        if let (Some(resolve), Some(canvas)) = (&pass.resolve, picture) {
             let (shown, transfer) = (canvas.image(PICTURE), given.function.transfer());
             sets.resolve = Some(resolve.bind(given.ring, shown, transfer)?);
         }
@@ -217,7 +233,7 @@ fn inputs<'a>(given: &Given<'a>, copy: &'a GpuVolume, brick: usize) -> Inputs<'a
         beside: &[],
         light: None,
         points: None,
-        sky: None,
+        sky: given.sky,
         skip: given.function.skip(given.volume),
     }
 }

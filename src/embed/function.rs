@@ -1,5 +1,6 @@
 //! A transfer function on a host's device, and what is empty under it.
 
+use super::paths::OfPaths;
 use super::pieces::run_of;
 use super::{Error, Volume};
 use crate::gpu::{ComputePipeline, Gpu};
@@ -18,6 +19,8 @@ pub(super) struct Function {
     pub mix: SampleInputs,
     /// Points and second gradients, which loops of the driver are counted by.
     pub turns: crate::technique::Functions,
+    /// What paths want to know of it, where they are traced.
+    pub paths: Option<Box<OfPaths>>,
     uploaded: Uploaded,
 }
 
@@ -78,6 +81,7 @@ impl Function {
                 second: gradient_transfer.is_some_and(GradientTransfer::needs_second),
                 labels: 0,
             },
+            paths: OfPaths::new(function, settings, volume),
             uploaded: Uploaded::default(),
         })
     }

@@ -94,6 +94,7 @@ impl Submitter {
         };
         if ended.is_err() {
             renderer.function.forget_later(before);
+            renderer.restart_paths();
         }
         renderer.end_parts(frame);
         ended

@@ -135,6 +135,10 @@ impl Renderer {
             self.spare = made;
             return Err(refused);
         }
+        if made.traced.is_some() {
+            // They would go on in the picture that this one goes on in.
+            self.frames.iter_mut().for_each(|other| other.begun = None);
+        }
         let there = &mut self.frames[frame];
         (there.recorded.shot, there.begun, there.picked) = (None, None, None);
         Ok((frame, made))
@@ -142,6 +146,7 @@ impl Renderer {
 
     /// What was recorded of a frame, to be drawn. The room of what was recorded before is kept for the next one.
     pub(super) fn keep(&mut self, frame: usize, made: Recorded) {
+        self.traced = made.traced;
         self.spare = std::mem::replace(&mut self.frames[frame].recorded, made);
     }
 
@@ -277,9 +282,14 @@ impl Renderer {
             false => class.depth_access(),
             true => DepthAccess::Sampled,
         };
+        let (before, traced) = self.paths_of(shot);
         let mut write =
             |mut recording: Recording, depth_access: DepthAccess| -> Result<BrickPass, Error> {
                 recording.skip(skip);
+                if let (Some(of_paths), Some(traced)) = (&self.function.paths, &traced) {
+                    of_paths.fields.tell(&mut recording.frame);
+                    traced.tell(before, &mut recording.frame);
+                }
                 match (depth, depth_access) {
                     (Some(depth), _) if !class.host_depth => recording.in_depths_of(&depth, center),
                     (Some(depth), DepthAccess::Tested) if class.gathers() => {
@@ -302,6 +312,7 @@ impl Renderer {
             };
         let Recorded {
             shot: of,
+            traced: made_traced,
             picture,
             depth: of_slices,
             order,
@@ -320,6 +331,7 @@ impl Renderer {
             })?;
         }
         *of = Some((*shot.camera, copy));
+        *made_traced = traced;
         Ok(())
     }
 
@@ -358,20 +370,28 @@ impl Renderer {
         let Some((_, copy)) = made.shot else {
             unreachable!("described before");
         };
+        // Until the last part is there.
+        self.traced = None;
         let Frame {
             picture,
             slice_depth,
             sets,
             ..
         } = &mut self.frames[frame];
+        // What frames before have read and written of a mean comes first.
+        let adds_up = self.mean.is_some();
         for (canvas, sets, bricks) in [
-            (picture, &sets.picture, &made.picture),
-            (slice_depth, &sets.slice_depth, &made.depth),
+            (
+                self.mean.as_mut().or(picture.as_mut()),
+                &sets.picture,
+                &made.picture,
+            ),
+            (slice_depth.as_mut(), &sets.slice_depth, &made.depth),
         ] {
             let (Some(canvas), Some(bound)) = (canvas, sets.get(copy)) else {
                 continue;
             };
-            if part.is_first {
+            if part.is_first && !adds_up {
                 canvas.begin();
             }
             let gpu = &self.gpu;

@@ -3,10 +3,12 @@
 use super::frame::{Frame, FrameSize, Given, Recorded};
 use super::function::{self, Function};
 use super::pass::Pass;
+use super::paths::{self, Traced};
 use super::renderer_desc::{READ_DEPTH, what};
 use super::{Error, HostDepthImage, RendererDesc, Volume};
-use crate::gpu::{ComputePipeline, Gpu, ParameterRing};
+use crate::gpu::{Buffer, ComputePipeline, Gpu, ParameterRing};
 use crate::resident::EmptySpace;
+use crate::technique::gather::Canvas;
 use crate::technique::{self, Mode, Settings, ShaderVariant, parameter_ring};
 use crate::transfer::TransferFunction;
 use std::sync::Arc;
@@ -27,6 +29,11 @@ pub struct Renderer {
     pub(super) pass: Pass,
     pub(super) ring: ParameterRing,
     pub(super) extent: [u32; 2],
+    /// Of a picture of the sky.
+    sky: Option<Buffer>,
+    /// What frames of paths add up in, and what they have added up to.
+    pub(super) mean: Option<Canvas>,
+    pub(super) traced: Option<Traced>,
     host_depths: Vec<HostDepthImage>,
     pub(super) frames: Vec<Frame>,
     /// What the next recording is told in.
@@ -77,6 +84,9 @@ impl Renderer {
             pass,
             ring: parameter_ring(gpu, slots)?,
             extent,
+            sky: paths::sky(gpu, &class.settings)?,
+            mean: None,
+            traced: None,
             host_depths: Vec::new(),
             frames: Vec::new(),
             spare: Recorded::with_room(2 * most_bricks),
@@ -104,13 +114,20 @@ impl Renderer {
             keeps_layers: is_picked || self.most_bricks > 1,
             is_picked,
         };
+        let adds_up = self.class.settings.technique.traces_paths();
+        let gather = self.pass.picture.as_ref().filter(|_| adds_up);
+        let desc = self.given(None).canvas(size, None);
+        let mean = gather.map(|gather| gather.canvas(&desc)).transpose()?;
         let mut frames = Vec::new();
         for frame in 0..self.class.frames_in_flight as usize {
             let depth = host_depths.get(frame).or(host_depths.first());
-            let given = self.given(depth.copied());
+            let given = Given {
+                mean: mean.as_ref(),
+                ..self.given(depth.copied())
+            };
             frames.push(Frame::new(&given, size, frames.first())?);
         }
-        self.frames = frames;
+        (self.frames, self.mean, self.traced) = (frames, mean, None);
         self.extent = extent;
         self.host_depths = host_depths.to_vec();
         Ok(())
@@ -162,6 +179,7 @@ impl Renderer {
                 settings.per_mode.exact_maximum,
                 settings.per_mode.depth_cue == 0.0,
                 settings.is_half_angle(),
+                settings.path.sky_picture.clone(),
             )
         };
         let is_same =
@@ -181,6 +199,10 @@ impl Renderer {
             let settings = &class.settings;
             let made = Function::new(&self.gpu, &self.volume, settings, None, emptying)?;
             self.show(Arc::clone(&self.volume), made)?;
+        }
+        if let Some(there) = &self.function.paths {
+            self.function.paths = there.under(&class.settings, &self.volume);
+            self.traced = None;
         }
         self.class = class;
         Ok(())
@@ -240,6 +262,8 @@ impl Renderer {
             volume: &self.volume,
             function: &self.function,
             host_depth,
+            sky: self.sky.as_ref(),
+            mean: self.mean.as_ref(),
         }
     }
 
@@ -260,6 +284,7 @@ impl Renderer {
             (frame.recorded.shot, frame.begun) = (None, None);
         }
         (self.volume, self.function) = (volume, function);
+        self.traced = None;
         Ok(())
     }
 

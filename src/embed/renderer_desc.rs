@@ -97,6 +97,7 @@ impl RendererDesc {
     /// Refuses by name what is not drawn inside a host's frame.
     pub(super) fn check(&self) -> Result<(), Error> {
         let settings = &self.settings;
+        let (path, traces) = (&settings.path, settings.technique.traces_paths());
         let is_sliced = !settings.technique.casts_rays();
         let is_in_target = self.slice_blending == SliceBlending::InTarget;
         let refused = [
@@ -106,9 +107,24 @@ impl RendererDesc {
                 "draw their picture by `offscreen::Renderer`",
             ),
             (
-                settings.technique.traces_paths(),
-                "path tracing",
+                traces && (path.noise.is_some() || path.seconds.is_some()),
+                "path tracing that ends by itself",
+                "record frames for as long as it should go on",
+            ),
+            (
+                traces && path.denoise,
+                "path tracing without noise",
                 "draw its picture by `offscreen::Renderer`",
+            ),
+            (
+                traces && self.finds_depth(),
+                "the depth of path tracing",
+                "its pixels are means of paths, which have no one depth",
+            ),
+            (
+                traces && self.host_depth && (path.lens.is_some() || path.shows_sky),
+                "path tracing with a lens, or before its sky, behind what a host has drawn",
+                "the host draws the sky, and all is sharp",
             ),
             (
                 settings.single_scattering.is_some(),

@@ -70,6 +70,7 @@ impl Submitter {
         };
         if submitted.is_err() {
             renderer.function.forget_later(uploaded);
+            renderer.restart_paths();
         }
         submitted
     }

@@ -75,6 +75,15 @@ impl Light {
         }
     }
 
+    /// A white one that the eye carries.
+    pub fn of_eye() -> Self {
+        Self {
+            towards: DVec3::Z,
+            space: LightSpace::Camera,
+            srgb: [1.0; 3],
+        }
+    }
+
     /// The unit vector to the light in world space, for a camera with these axes.
     pub(super) fn way(&self, camera: &camera::Frame) -> Result<DVec3, Error> {
         let towards = match self.space {

@@ -104,6 +104,11 @@ static sv_status h_pick(uint64_t x) {
     sv_pick pick = {.struct_size = sizeof pick};
     return sv_renderer_pick(x, 0, 0, 0, &pick, &diagnostic);
 }
+static sv_status h_traced(uint64_t x) {
+    uint32_t paths = 0;
+    return sv_renderer_paths_traced(x, &paths, &diagnostic);
+}
+static sv_status h_restart(uint64_t x) { return sv_renderer_restart_paths(x, &diagnostic); }
 static sv_status h_renderer_destroy(uint64_t x) { return sv_renderer_destroy(x, &diagnostic); }
 static sv_status h_submit_of(uint64_t x) {
     const sv_target target = whole_target();
@@ -218,6 +223,8 @@ static const struct {
     {"sv_renderer_record_into", h_record_into, RENDERER, 0},
     {"sv_renderer_record_pick", h_record_pick, RENDERER, 0},
     {"sv_renderer_pick", h_pick, RENDERER, 0},
+    {"sv_renderer_paths_traced", h_traced, RENDERER, 0},
+    {"sv_renderer_restart_paths", h_restart, RENDERER, 0},
     {"sv_renderer_destroy", h_renderer_destroy, RENDERER, 0},
     {"sv_submitter_submit, its renderer", h_submit_of, RENDERER, 0},
     {"sv_submitter_submit", h_submit, SUBMITTER, 0},

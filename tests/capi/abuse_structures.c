@@ -21,6 +21,10 @@ static sv_status s_settings(void *x) {
     desc.settings = x;
     return with_renderer(desc);
 }
+static sv_status s_paths(void *x) {
+    const sv_settings settings = {.struct_size = sizeof settings, .paths = x};
+    return s_settings((void *)&settings);
+}
 static sv_status s_class(void *x) {
     sv_renderer_desc desc = renderer_desc();
     desc.target = x;
@@ -73,6 +77,7 @@ static const struct {
     {"sv_transfer_function_desc", s_function, sizeof(sv_transfer_function_desc), 0, 0},
     {"sv_renderer_desc", s_renderer, sizeof(sv_renderer_desc), 0, 0},
     {"sv_settings", s_settings, sizeof(sv_settings), 1, 0},
+    {"sv_path_tracing", s_paths, sizeof(sv_path_tracing), 1, 0},
     {"sv_target_class", s_class, sizeof(sv_target_class), 0, 0},
     {"sv_frame_info", s_shot, sizeof(sv_frame_info), 0, 0},
     {"sv_camera", s_camera, sizeof(sv_camera), 1, 0},

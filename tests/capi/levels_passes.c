@@ -1,4 +1,5 @@
-/* Level A in a render pass of the host's and in a rendering of several samples; level B with a queue family that is named. */
+/* Level A in a render pass of the host's and in a rendering of several samples; level B with a queue family that is named;
+ * frames of paths, which add up. */
 #include "levels.h"
 
 static sv_renderer renderer_for(const sv_target_class *target) {
@@ -137,6 +138,37 @@ static void of_a_family(const uint8_t *wanted) {
     CHECK(sv_renderer_destroy(renderer, &diagnostic));
 }
 
+static uint32_t traced(sv_renderer renderer) {
+    uint32_t paths = 0;
+    CHECK(sv_renderer_paths_traced(renderer, &paths, &diagnostic));
+    return paths;
+}
+
+static void of_paths(void) {
+    static uint8_t first[BYTES], more[BYTES], whole[BYTES];
+    sv_path_tracing paths = {.struct_size = sizeof paths, .samples = 5, .samples_per_frame = 2, .mean_cosine = 0.3};
+    const sv_settings settings = {
+        .struct_size = sizeof settings, .technique = SV_TECHNIQUE_PATHTRACE, .paths = &paths};
+    sv_renderer renderer = make_renderer(&settings, 0);
+    draw_a(renderer, NULL, first);
+    expect(drawn_pixels(first) > 500, "paths show the volume by the light of the eye");
+    for (uint32_t wanted = 2; wanted <= 5; wanted += wanted == 4 ? 1 : 2) {
+        expect(traced(renderer) == wanted, "each frame has two paths more, up to five");
+        draw_a(renderer, NULL, more);
+    }
+    expect(traced(renderer) == 5, "there are no more paths than were asked for");
+    expect(memcmp(first, more, BYTES) != 0, "more paths show another picture");
+    CHECK(sv_renderer_restart_paths(renderer, &diagnostic));
+    draw_a(renderer, NULL, more);
+    expect(traced(renderer) == 2 && !memcmp(first, more, BYTES), "the first paths are the same again");
+    CHECK(sv_renderer_destroy(renderer, &diagnostic));
+    paths.samples_per_frame = 5;
+    renderer = make_renderer(&settings, 0);
+    draw_a(renderer, NULL, whole);
+    expect(traced(renderer) <= 5 && drawn_pixels(whole) > 500, "a frame has as many as it may");
+    CHECK(sv_renderer_destroy(renderer, &diagnostic));
+}
+
 void test_passes(void) {
     static uint8_t wanted[BYTES];
     sv_renderer renderer = make_renderer(NULL, 0);
@@ -145,4 +177,5 @@ void test_passes(void) {
     in_a_render_pass(wanted);
     of_several_samples(wanted);
     of_a_family(wanted);
+    of_paths();
 }

@@ -22,6 +22,7 @@ mod layouts;
 mod levels;
 mod parts;
 mod patches;
+mod paths;
 mod pictures;
 mod pieces;
 mod plan;

@@ -5,6 +5,7 @@ use crate::error::Error;
 use crate::look::Look;
 use crate::marks::{Layers, Marker};
 use crate::painter::Painter;
+use crate::resting::Resting;
 use ash::vk;
 use std::sync::Arc;
 use stratavox::camera::Camera;
@@ -19,6 +20,8 @@ use stratavox::volume;
 pub struct Drawing {
     gpu: Arc<Gpu>,
     pub renderer: Renderer,
+    pub resting: Resting,
+    volume: Arc<Volume>,
     pub canvas: Canvas,
 }
 
@@ -63,6 +66,8 @@ impl Drawing {
         Ok(Self {
             gpu: Arc::clone(gpu),
             renderer,
+            resting: Resting::default(),
+            volume,
             canvas,
         })
     }
@@ -82,6 +87,7 @@ impl Drawing {
         volume: &Arc<Volume>,
         function: Option<&TransferFunction>,
     ) -> Result<(), Error> {
+        self.volume = Arc::clone(volume);
         match self.renderer.set_volume(volume, function) {
             Err(stratavox::embed::Error::OtherDescription { .. }) => {
                 let class = self.renderer.class().clone();
@@ -93,8 +99,8 @@ impl Drawing {
         }
     }
 
-    /// Records the picture, before `behind` (linear light), with marks. The image is in [`Use::FragmentSampled`]
-    /// afterwards.
+    /// Records the picture, before `behind` (linear light), with marks; where it `rests`, that of its scattered light
+    /// with more paths, or none: false. The image is in [`Use::FragmentSampled`] afterwards.
     ///
     /// # Safety
     /// As [`Renderer::record_into`].
@@ -103,10 +109,20 @@ impl Drawing {
         cmd: vk::CommandBuffer,
         frame: u32,
         camera: &Camera,
-        behind: [f32; 4],
+        (look, rests): (&Look, bool),
         marks: Option<(&Marker, &Layers)>,
         timer: Option<&Timer>,
-    ) -> Result<(), Error> {
+    ) -> Result<bool, Error> {
+        let renderer = match rests {
+            false => &mut self.renderer,
+            true => {
+                let resting = &mut self.resting;
+                match resting.wait(&self.gpu, &self.volume, look, &self.renderer)? {
+                    Some(of_paths) => of_paths,
+                    None => return Ok(false),
+                }
+            }
+        };
         let mut target = Target {
             image: self.canvas.image.raw(),
             view: self.canvas.image.view(),
@@ -134,7 +150,7 @@ impl Drawing {
             if let Some(timer) = timer {
                 timer.start(cmd);
             }
-            let mut load = Load::Clear(behind);
+            let mut load = Load::Clear(look.backdrop());
             if let Some((marker, layers)) = marks {
                 if let Some(layer) = &layers.behind {
                     target.enter(&self.gpu, cmd, Use::ColorTarget);
@@ -143,7 +159,7 @@ impl Drawing {
                 }
                 target.after = Use::ColorTarget.into();
             }
-            self.renderer.record_into(cmd, &shot, &target, load)?;
+            renderer.record_into(cmd, &shot, &target, load)?;
             if let Some((marker, layers)) = marks {
                 marker.draw(cmd, &layers.front, &self.canvas, Load::Keep);
                 target.after = Use::FragmentSampled.into();
@@ -153,7 +169,10 @@ impl Drawing {
                 timer.stop(cmd);
             }
         }
-        Ok(())
+        if rests {
+            self.resting.show();
+        }
+        Ok(true)
     }
 }
 

@@ -11,6 +11,7 @@ pub enum Command {
     NextFilter { is_back: bool },
     Projection,
     Light,
+    Scatter,
     Marks,
     View(View),
     Turn([f64; 2]),
@@ -100,6 +101,13 @@ pub const KEYS: &[Row] = &[
         "next filter, with shift the one before",
     ),
     row(Key::L, Command::Light, None, "L", "light on surfaces"),
+    row(
+        Key::G,
+        Command::Scatter,
+        None,
+        "G",
+        "light that scatters, where rays composite and the picture rests",
+    ),
     row(
         Key::A,
         Command::Marks,

@@ -42,6 +42,8 @@ pub struct Look {
     pub filter: Filter,
     /// What a hand says of light; `None`: what suits mode and function.
     pub light_by_hand: Option<bool>,
+    /// Light scatters where the picture rests.
+    pub scatters: bool,
     /// Of lit matter; surfaces have the usual one.
     light: Shading,
     /// What a hand says; `None`: what suits mode and function.
@@ -96,6 +98,7 @@ impl Look {
                 Interpolation::Linear => Filter::Linear,
             },
             light_by_hand: None,
+            scatters: false,
             light: match is_auto {
                 true => light(&subject.voxels),
                 false => Shading::default(),

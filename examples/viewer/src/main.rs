@@ -29,6 +29,7 @@ mod marks;
 mod painter;
 mod panel;
 mod reader;
+mod resting;
 mod script;
 mod shot;
 mod subject;

@@ -63,6 +63,8 @@ pub struct Status {
     /// The last picture of the volume, on the device.
     pub picture_ms: Option<f64>,
     pub extent: [u32; 2],
+    /// Paths a pixel, of how many, where light scatters.
+    pub paths: Option<[u32; 2]>,
     pub present: String,
     pub pipelines: u32,
     pub device_bytes: u64,
@@ -136,6 +138,12 @@ impl View {
                 self.look.filter = next(&FILTERS, self.look.filter, is_back);
             }
             Command::Light => self.look.light_by_hand = Some(!self.look.wants_light()),
+            Command::Scatter => {
+                self.look.scatters = !self.look.scatters;
+                if self.look.scatters && !self.look.rests() {
+                    self.message = Some(SCATTERS_IN.into());
+                }
+            }
             Command::Marks => self.has_marks = !self.has_marks,
             Command::Projection => self.eye.is_parallel = !self.eye.is_parallel,
             Command::View(side) => self.eye.orbit = side.orbit(),
@@ -184,6 +192,8 @@ impl View {
         names.get(time as usize).cloned().unwrap_or_default()
     }
 }
+
+const SCATTERS_IN: &str = "light scatters in composites by rays, with the filters linear and nearest and a function of the value alone";
 
 /// A number with as many digits as a person reads.
 pub fn short(value: f64) -> String {

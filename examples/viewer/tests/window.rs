@@ -13,7 +13,8 @@ use stratavox::gpu::{DeviceChoice, Headless, Options};
 use stratavox::offscreen::Renderer;
 use stratavox::picture::{Picture, WriteOptions, read_image, write_picture};
 use stratavox::scene::{Beside, Scene};
-use stratavox::technique::{Settings, Technique};
+use stratavox::technique::pathtrace::PathTracing;
+use stratavox::technique::{Light, LightSpace, Settings, Technique};
 use stratavox::transfer::{Classified, TransferFunction, ValueSummary, automatic, automatic_in};
 use stratavox::volume::{Limits, TimeComponent, Volume, phantom};
 use tempfile::TempDir;
@@ -132,6 +133,39 @@ fn offscreen(
     renderer.render(&scene, &[]).unwrap().picture
 }
 
+/// What suits the values.
+fn usual_function(volume: &Volume) -> TransferFunction {
+    let summary = ValueSummary::of(
+        volume.voxels.len(),
+        volume.value_range,
+        volume.grid().diagonal(),
+        volume.hounsfield,
+        |i| {
+            let rescale = volume.rescale;
+            Some(f64::from(volume.voxels.stored(i)) * rescale.slope + rescale.intercept)
+        },
+    );
+    automatic(&summary, Classified::Samples, None)
+}
+
+/// A picture as it comes out of a file, before what `drawing.rs` clears it to, blended by the device in the same numbers.
+fn shown(folder: &Path, mut picture: Picture) -> Vec<[f32; 4]> {
+    let behind = [0.008_f32, 0.011, 0.016, 1.0];
+    for pixel in &mut picture.pixels {
+        let left = 1.0 - pixel[3];
+        for c in 0..4 {
+            pixel[c] += left * behind[c];
+        }
+    }
+    let path = folder.join("wanted.png");
+    let options = WriteOptions {
+        force: true,
+        ..WriteOptions::default()
+    };
+    write_picture(&picture, &path, options).unwrap();
+    pixels(&path).1
+}
+
 #[test]
 fn the_window_shows_what_the_offscreen_renderer_draws() {
     let Some(display) = Display::new() else {
@@ -140,18 +174,7 @@ fn the_window_shows_what_the_offscreen_renderer_draws() {
     let folder = TempDir::new().unwrap();
     let spec = "phantom:head,n=40";
     let volume = read(spec);
-    let diagonal = volume.grid().diagonal();
-    let summary = ValueSummary::of(
-        volume.voxels.len(),
-        volume.value_range,
-        diagonal,
-        volume.hounsfield,
-        |i| {
-            let rescale = volume.rescale;
-            Some(f64::from(volume.voxels.stored(i)) * rescale.slope + rescale.intercept)
-        },
-    );
-    let function = automatic(&summary, Classified::Samples, None);
+    let function = usual_function(&volume);
     let extent = [212, 160];
     for (technique, key) in [
         (Technique::Raycast, "key O\nkey ArrowLeft"),
@@ -174,23 +197,8 @@ fn the_window_shows_what_the_offscreen_renderer_draws() {
             ..Settings::default()
         };
         let camera = report.camera(&volume, extent);
-        let mut wanted = offscreen(&volume, &function, &camera, extent, &settings);
-        // What `drawing.rs` clears the picture to, blended by the device in the same numbers.
-        let behind = [0.008_f32, 0.011, 0.016, 1.0];
-        for pixel in &mut wanted.pixels {
-            let left = 1.0 - pixel[3];
-            for c in 0..4 {
-                pixel[c] += left * behind[c];
-            }
-        }
-        let path = folder.path().join("wanted.png");
-        let options = WriteOptions {
-            force: true,
-            ..WriteOptions::default()
-        };
-        write_picture(&wanted, &path, options).unwrap();
-        let (size, wanted) = pixels(&path);
-        assert_eq!(size, extent);
+        let wanted = offscreen(&volume, &function, &camera, extent, &settings);
+        let wanted = shown(folder.path(), wanted);
         let (_, picture) = pixels(&folder.path().join("p.png"));
         let (_, window) = pixels(&folder.path().join("w.png"));
         assert!(
@@ -206,6 +214,52 @@ fn the_window_shows_what_the_offscreen_renderer_draws() {
         let apart = codes_apart(&wanted, &window);
         assert!(apart < 1.5, "{technique}: the window is {apart} codes off");
     }
+}
+
+#[test]
+fn light_scatters_where_the_picture_rests() {
+    let Some(display) = Display::new() else {
+        return;
+    };
+    let folder = TempDir::new().unwrap();
+    let spec = "phantom:head,n=16";
+    let volume = read(spec);
+    let lines = "picture rays.png\nkey G\nreport\npicture p.png\nkey ArrowLeft\nkey R\nreport\npicture again.png\nkey G\npicture off.png\n";
+    let words = [spec, "--look", "plain", "--bare", "--size", "80x64"];
+    let report = display.play(folder.path(), &words, lines);
+    assert_eq!(report.numbers("paths", 0), [64.0, 64.0]);
+    assert_eq!(report.numbers("paths", 1), [64.0, 64.0]);
+    let picture = |name: &str| pixels(&folder.path().join(name)).1;
+    assert!(picture("p.png") == picture("again.png"));
+    assert!(picture("rays.png") == picture("off.png"));
+    let apart = codes_apart(&picture("p.png"), &picture("rays.png"));
+    assert!(apart > 20.0, "{apart}");
+    let key = Light {
+        towards: glam::dvec3(-0.54, 0.64, 0.54),
+        space: LightSpace::Camera,
+        srgb: [1.0; 3],
+    };
+    let settings = Settings {
+        technique: Technique::Pathtrace,
+        path: PathTracing {
+            samples: 64,
+            density: 0.5,
+            lights: vec![key],
+            light_size_degrees: 40.0,
+            sky: [0.35; 3],
+            surface: 8.0,
+            f0: 0.04,
+            roughness: 0.45,
+            ..PathTracing::default()
+        },
+        ..Settings::default()
+    };
+    let extent = [80, 64];
+    let (function, camera) = (usual_function(&volume), report.camera(&volume, extent));
+    let wanted = offscreen(&volume, &function, &camera, extent, &settings);
+    // Sums of f32 in another order: a code where they are rounded the other way.
+    let apart = codes_apart(&shown(folder.path(), wanted), &picture("p.png"));
+    assert!(apart < 1.5, "{apart} codes");
 }
 
 #[test]

@@ -2,10 +2,9 @@
 
 use super::numbers::positive;
 use super::{EnvironmentWord, Error, LightFlags, Numbers, ScatteringWord, finite};
+use crate::technique::Light;
 use crate::technique::pathtrace::{Lens, PathTracing, Phase};
-use crate::technique::{Light, LightSpace};
 use clap::Args;
-use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::{fmt, str::FromStr};
@@ -109,11 +108,7 @@ impl PathFlags {
         let default = PathTracing::default();
         let mut lights: Vec<Light> = light.light.iter().map(|word| word.light()).collect();
         if !light.has_lights() && self.environment.is_none() {
-            lights.push(Light {
-                towards: DVec3::Z,
-                space: LightSpace::Camera,
-                srgb: [1.0; 3],
-            });
+            lights.push(Light::of_eye());
         }
         let (sky, sky_picture) = match &self.environment {
             None => (default.sky, None),

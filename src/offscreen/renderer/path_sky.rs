@@ -1,11 +1,10 @@
 //! The picture of the sky on the device, kept from pass to pass.
 
-use crate::gpu::{Buffer, Gpu, Memory};
+use crate::gpu::{Buffer, Gpu};
 use crate::offscreen::Error;
 use crate::offscreen::keyed::Keyed;
 use crate::scene::Scene;
 use crate::technique::pathtrace::SkyPicture;
-use ash::vk::BufferUsageFlags as Usage;
 use std::sync::Arc;
 
 /// The buffer of the last picture that was asked for.
@@ -20,15 +19,7 @@ impl PathSky {
         let Some(picture) = picture.filter(|_| settings.technique.traces_paths()) else {
             return Ok(None);
         };
-        let made = self
-            .0
-            .of(picture.clone(), |picture| -> Result<Buffer, Error> {
-                let bytes = picture.bytes();
-                let usage = Usage::STORAGE_BUFFER;
-                let buffer = Buffer::new(gpu, bytes.len() as u64, usage, Memory::Upload, "sky")?;
-                buffer.write(0, bytes)?;
-                Ok(buffer)
-            });
-        made.map(Some)
+        let made = self.0.of(picture.clone(), |picture| picture.on_device(gpu));
+        Ok(made.map(Some)?)
     }
 }

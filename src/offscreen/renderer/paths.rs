@@ -12,15 +12,12 @@ use super::path_sums::PathSums;
 use crate::offscreen::Error;
 use crate::offscreen::layer_rules::Clock;
 use crate::scene::Scene;
-use crate::technique::pathtrace::{PATHS_OF_LOOP, PathTracing, denoised};
+use crate::technique::pathtrace::{PathTracing, denoised, paths_at_once};
 use crate::technique::{InPixel, Settings};
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
-
-/// Paths of one pass where no driver counts the turns of loops.
-const AT_ONCE: u32 = 8;
 
 /// The first paths of a picture come in blocks of few, so that of few paths several blocks tell the noise.
 const EARLY: u32 = 8;
@@ -37,13 +34,6 @@ fn block_behind(done: u32, at_once: u32) -> u32 {
     match done < EARLY {
         true => EARLY_AT_ONCE,
         false => at_once,
-    }
-}
-
-fn paths_at_once(max_loop_turns: u32) -> u32 {
-    match max_loop_turns {
-        u32::MAX => AT_ONCE,
-        _ => PATHS_OF_LOOP,
     }
 }
 

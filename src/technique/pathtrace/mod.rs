@@ -44,6 +44,8 @@ pub struct PathTracing {
     pub samples: u32,
     /// The number of the first of them: pictures of paths `0..a` and `a..b` add up to that of `0..b`.
     pub first_sample: u32,
+    /// Of a host's frame ([`crate::embed::Renderer::record`]): so many more of them, 1 to 8. Other pictures do not look at it.
+    pub samples_per_frame: u32,
     /// Other numbers, other noise.
     pub seed: u32,
     /// How often light is scattered at most; 0: it is not, and matter shines in its colours as in a composite. `None`: as
@@ -102,6 +104,7 @@ impl Default for PathTracing {
         Self {
             samples: 64,
             first_sample: 0,
+            samples_per_frame: 1,
             seed: 0,
             bounces: None,
             density: 1.0,
@@ -154,8 +157,18 @@ fn gather(desc: &GatherDesc) -> Result<Box<dyn Gather>, gpu::Error> {
     Ok(rays_of(desc.gpu, RayPass::picture_of(desc.gpu, &name)?))
 }
 
-/// How many paths a pixel has in one pass where a driver ends loops after so many turns.
-pub(crate) const PATHS_OF_LOOP: u32 = 4;
+/// How many paths a pixel has in one pass, and where a driver ends loops after so many turns.
+pub(crate) const PATHS_OF_PASS: u32 = 8;
+const PATHS_OF_LOOP: u32 = 4;
+
+/// As many as one pass has at most.
+pub(crate) fn paths_at_once(max_loop_turns: u32) -> u32 {
+    match max_loop_turns {
+        u32::MAX => PATHS_OF_PASS,
+        _ => PATHS_OF_LOOP,
+    }
+}
+
 /// Turns of loops after which the paths of one pass end by chance: half of what drivers that count them allow, so that all
 /// end long before ([`crate::gpu::Caps::max_loop_turns`]).
 const MOST_TURNS: u32 = 1 << 15;
@@ -185,9 +198,18 @@ pub(crate) struct Medium<'a> {
 /// f32 rounds a table's entries and the products with them.
 const MAJORANT_SLACK: f64 = 1.0 + 1e-5;
 
+/// What the parameters of paths are told of the volume: the same for all views of it.
+#[derive(Clone, Debug)]
+pub(crate) struct MediumFields {
+    majorants: Majorants,
+    /// Turns of loops that an event takes, and a collision.
+    turns: [u32; 2],
+    surface: f32,
+}
+
 impl PathTracing {
-    /// Tells the parameters what they do not know without the volume.
-    pub(crate) fn tell(&self, medium: &Medium, frame: &mut Frame) {
+    /// What parameters do not know without the volume.
+    pub(crate) fn fields_of(&self, medium: &Medium) -> MediumFields {
         let Medium {
             function,
             reference_length,
@@ -196,16 +218,7 @@ impl PathTracing {
             value_range: [low, high],
             smallest_spacing,
         } = *medium;
-        let majorants = Majorants::new(function, |opacity| {
-            MAJORANT_SLACK * self.density * extinction(opacity, reference_length)
-        });
-        frame.path_bin_first = majorants.first;
-        frame.path_bin_scale = majorants.scale;
-        frame.path_majorants = majorants.rows;
-        // The last row has one entry: of all bins.
-        frame.path_majorant = majorants.rows[(MAJORANT_BINS * (MAJORANT_ROWS - 1) / 4) as usize][0];
-        // A search halves the points of colour and of opacity. Clip planes are gone over at each change of direction; two
-        // events at least are between two of these, and between two collisions.
+        // A search halves the points of colour and of opacity.
         let points = (function.color.len() + function.opacity.len() + 1).ilog2() + 2;
         let sum = |parts: &[(bool, u32)]| -> u32 {
             let there = parts.iter().filter(|(is_there, _)| *is_there);
@@ -217,13 +230,35 @@ impl PathTracing {
             (has_holes && self.surface > 0.0, 6 * TURNS_OF_MASK),
             (self.phase == Phase::Rayleigh, TURNS_OF_ROOT),
         ]);
+        let range = high - low;
+        MediumFields {
+            majorants: Majorants::new(function, |opacity| {
+                MAJORANT_SLACK * self.density * extinction(opacity, reference_length)
+            }),
+            turns: [event, collision],
+            surface: match range > 0.0 {
+                true => (self.surface * smallest_spacing / range) as f32,
+                false => 0.0,
+            },
+        }
+    }
+}
+
+impl MediumFields {
+    /// Tells the parameters.
+    pub(crate) fn tell(&self, frame: &mut Frame) {
+        let majorants = &self.majorants;
+        frame.path_bin_first = majorants.first;
+        frame.path_bin_scale = majorants.scale;
+        frame.path_majorants = majorants.rows;
+        // The last row has one entry: of all bins.
+        frame.path_majorant = majorants.rows[(MAJORANT_BINS * (MAJORANT_ROWS - 1) / 4) as usize][0];
+        // Clip planes are gone over at each change of direction; two events at least are between two of these, and between
+        // two collisions.
+        let [event, collision] = self.turns;
         let all = 1 + event + (2 * frame.clip_plane_count + collision).div_ceil(2);
         frame.path_turns = MOST_TURNS / PATHS_OF_LOOP / all;
-        let range = high - low;
-        frame.path_surface = match range > 0.0 {
-            true => (self.surface * smallest_spacing / range) as f32,
-            false => 0.0,
-        };
+        frame.path_surface = self.surface;
     }
 }
 

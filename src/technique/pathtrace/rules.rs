@@ -1,6 +1,6 @@
 //! What does not go together with paths.
 
-use super::{Lens, PathTracing};
+use super::{Lens, PATHS_OF_PASS, PathTracing};
 use crate::camera::{Camera, Projection};
 use crate::picture::ColorSpace;
 use crate::technique::compatibility::refuse;
@@ -104,6 +104,14 @@ impl PathTracing {
         let count = f64::from(self.samples);
         let wanted = "1 or more";
         Error::unless(self.samples > 0, "paths a pixel", wanted, count)?;
+        let of_frame = self.samples_per_frame;
+        let is_right = (1..=PATHS_OF_PASS).contains(&of_frame);
+        Error::unless(
+            is_right,
+            "paths a pixel and frame",
+            "1 to 8",
+            of_frame.into(),
+        )?;
         let wanted = "4 or more, which tell what is noise";
         let is_right = !self.denoise || self.samples >= 4;
         Error::unless(is_right, "paths a pixel", wanted, count)?;

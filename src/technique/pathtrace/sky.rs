@@ -8,8 +8,10 @@
 //! By a texel's own radiance the neighbours of a sun, into which its light reaches, would be drawn too seldom.
 
 use super::elementary::{turn_of, turned};
+use crate::gpu::{self, Buffer, Gpu, Memory};
 use crate::real::Real;
 use crate::shaders::Frame;
+use ash::vk;
 use std::f64::consts::TAU;
 use std::fmt;
 use std::sync::Arc;
@@ -111,6 +113,15 @@ impl SkyPicture {
     /// As the shader reads them.
     pub(crate) fn bytes(&self) -> &[u8] {
         bytemuck::cast_slice(&self.0.texels)
+    }
+
+    /// In a buffer for shaders.
+    pub(crate) fn on_device(&self, gpu: &Arc<Gpu>) -> Result<Buffer, gpu::Error> {
+        let bytes = self.bytes();
+        let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
+        let buffer = Buffer::new(gpu, bytes.len() as u64, usage, Memory::Upload, "sky")?;
+        buffer.write(0, bytes)?;
+        Ok(buffer)
     }
 
     fn texel(&self, x: i32, y: i32) -> &SkyTexel {

@@ -238,6 +238,9 @@ fn status(ui: &mut Ui, view: &View) {
         .picture_ms
         .map_or(String::new(), |ms| format!(" in {ms:.1} ms"));
     ui.weak(format!("{width} × {height}{took}, {}", status.present));
+    if let Some([traced, all]) = status.paths {
+        ui.weak(format!("{traced} of {all} paths a pixel"));
+    }
     ui.weak(format!("{megabytes:.0} MB, {} pipelines", status.pipelines));
     ui.label(RichText::new("H shows the keys").color(ACCENT));
 }

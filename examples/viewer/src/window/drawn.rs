@@ -58,8 +58,20 @@ impl Window {
             has_marks: self.view.has_marks,
             extent,
         };
-        if self.drawn.as_ref() == Some(&now) && self.view.to_pick.is_none() {
+        let rests = self.drawn.as_ref() == Some(&now) && self.view.to_pick.is_none();
+        if rests && !drawing.resting.goes_on(&now.look) {
             return Ok(());
+        }
+        if !rests {
+            let is_other = |drawn: &Drawn| {
+                Drawn {
+                    eye: now.eye.clone(),
+                    ..drawn.clone()
+                } != now
+            };
+            drawing
+                .resting
+                .disturb(self.drawn.as_ref().is_none_or(is_other));
         }
         let camera = self.view.eye.camera(extent);
         let camera = camera.map_err(|error| Error::Drawing(error.into()))?;
@@ -79,8 +91,14 @@ impl Window {
                 false => None,
             };
             let marks = marks.as_ref().map(|(marker, layers)| (*marker, layers));
-            let behind = self.view.look.backdrop();
-            drawing.record(cmd, frame, &camera, behind, marks, timer)?;
+            let look = (&now.look, rests);
+            if !drawing.record(cmd, frame, &camera, look, marks, timer)? {
+                return Ok(());
+            }
+        }
+        self.view.status.paths = drawing.resting.paths(&now.look);
+        if rests {
+            return Ok(());
         }
         self.timed[frame as usize] = Some(parts);
         self.drawn = Some(now);

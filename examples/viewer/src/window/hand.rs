@@ -148,6 +148,9 @@ impl Window {
         println!("camera {}", view.eye.words());
         println!("time {}", view.subject.time);
         println!("pipelines {}", self.host.gpu().pipelines_made());
+        if let Some([traced, all]) = view.status.paths {
+            println!("paths {traced} {all}");
+        }
         for (grip, at) in &view.curve.handles {
             println!("handle {grip:?} {} {}", at.x, at.y);
         }

@@ -347,7 +347,9 @@ impl Window {
             has_marks: self.view.has_marks,
             extent: drawn.extent,
         };
-        self.drawn.as_ref().is_none_or(|drawn| now(drawn) != *drawn)
+        let drawing = self.drawing.as_ref();
+        let goes_on = drawing.is_some_and(|drawing| drawing.resting.goes_on(&self.view.look));
+        goes_on || self.drawn.as_ref().is_none_or(|drawn| now(drawn) != *drawn)
     }
 
     fn is_shrunk(&self) -> bool {
