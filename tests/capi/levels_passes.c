@@ -151,7 +151,7 @@ static void of_paths(void) {
         .struct_size = sizeof settings, .technique = SV_TECHNIQUE_PATHTRACE, .paths = &paths};
     sv_renderer renderer = make_renderer(&settings, 0);
     draw_a(renderer, NULL, first);
-    expect(drawn_pixels(first) > 100, "paths show the volume by the light of the eye");
+    expect(drawn_pixels(first) > 20, "paths show the volume by the light of the eye");
     for (uint32_t wanted = 2; wanted <= 5; wanted += wanted == 4 ? 1 : 2) {
         expect(traced(renderer) == wanted, "each frame has two paths more, up to five");
         draw_a(renderer, NULL, more);
@@ -165,7 +165,7 @@ static void of_paths(void) {
     paths.samples_per_frame = 5;
     renderer = make_renderer(&settings, 0);
     draw_a(renderer, NULL, whole);
-    expect(traced(renderer) <= 5 && drawn_pixels(whole) > 100, "a frame has as many as it may");
+    expect(traced(renderer) <= 5 && drawn_pixels(whole) > 20, "a frame has as many as it may");
     CHECK(sv_renderer_destroy(renderer, &diagnostic));
 }
 
