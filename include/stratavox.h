@@ -301,6 +301,27 @@ typedef uint32_t sv_direction;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
+// What a line is.
+enum sv_line_kind
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // Along the velocities of one instant.
+    SV_LINE_KIND_STREAM = 0,
+    // The way of one particle.
+    SV_LINE_KIND_PATH = 1,
+    // Where the particles are at one moment that left the seed one after another.
+    SV_LINE_KIND_STREAK = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum sv_line_kind sv_line_kind;
+#else
+typedef uint32_t sv_line_kind;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
 // Why a line ends.
 enum sv_cause
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -601,7 +622,7 @@ typedef struct sv_frame_info {
     uint32_t reserved;
 } sv_frame_info;
 
-// A field of velocities, and where its stream lines begin.
+// A field of velocities, and where its lines begin.
 typedef struct sv_trace_desc {
     // `sizeof(sv_trace_desc)`.
     uint32_t struct_size;
@@ -612,13 +633,14 @@ typedef struct sv_trace_desc {
     // sv_direction.
     uint32_t direction;
     // Three numbers a voxel, x fastest, then y, then z: along the axes of the world, world length per second; a voxel where one
-    // of them is not finite has no data. They are read before the call returns.
+    // of them is not finite has no data. With several times those of all voxels at the first of them, then at the second, and so
+    // on; between two times velocities are linear. They are read before the call returns.
     const float *velocities;
     // How many numbers there are.
     uint64_t velocity_count;
     // As in sv_volume_desc. All zero: voxel space is the world.
     double world_from_voxel[16];
-    // Three numbers each, world; or NULL: lines that are evenly spaced.
+    // Three numbers each, world; or NULL: stream lines that are evenly spaced.
     const double *seeds;
     // How many seeds there are.
     uint64_t seed_count;
@@ -634,6 +656,16 @@ typedef struct sv_trace_desc {
     double duration;
     // What a step may be off by, in cells of the grid. 0 is 0.001.
     double tolerance;
+    // sv_line_kind.
+    uint32_t kind;
+    // At how many times the velocities are given. 0 is 1; paths and streaks want 2 or more.
+    uint32_t time_count;
+    // These times, seconds that grow; NULL where there is one.
+    const double *times;
+    // Of stream lines the instant; of paths when particles are at the seeds; of streaks since when they leave them.
+    double start;
+    // Of streaks the moment that shows where they are.
+    double end;
 } sv_trace_desc;
 
 // Lines that follow a field: in memory of the host's alone. 0 is none.
@@ -1129,7 +1161,7 @@ sv_status sv_geometry_draw(sv_geometry geometry,
 // Destroys the handle; what frames in flight use is freed by sv_device_retire. Threads: any.
 sv_status sv_geometry_destroy(sv_geometry geometry, struct sv_diagnostic *diagnostic);
 
-// Follows stream lines of a field: by steps no longer than a cell, in 64-bit floats, one line a seed in their order, by all
+// Follows lines of a field: by steps no longer than a cell, in 64-bit floats, one line a seed in their order, by all
 // cores of the machine. Nothing is done on the device, which keeps the lines among its handles. Threads: any.
 sv_status sv_trace(sv_device device,
                    const struct sv_trace_desc *desc,
@@ -1147,11 +1179,19 @@ sv_status sv_lines_positions(sv_lines lines,
                              uint64_t *count,
                              struct sv_diagnostic *diagnostic);
 
-// The time since the seed, negative before it, and the speed at the vertices of one line: two doubles each. As
-// sv_lines_positions.
+// The time and the speed at the vertices of one line: two doubles each. Of a stream line the time since the seed, negative
+// before it; of a path that of the particle; of a streak when the particle left. As sv_lines_positions.
 sv_status sv_lines_values(sv_lines lines,
                           uint64_t line,
                           double *values,
+                          uint64_t *count,
+                          struct sv_diagnostic *diagnostic);
+
+// The numbers of those vertices of one line, counted from 0, that no piece of the line leads to: of a streak between whose
+// particles others are gone. As sv_lines_positions, one number each.
+sv_status sv_lines_breaks(sv_lines lines,
+                          uint64_t line,
+                          uint64_t *breaks,
                           uint64_t *count,
                           struct sv_diagnostic *diagnostic);
 

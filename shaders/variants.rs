@@ -415,9 +415,9 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     (
         "slices_3d_slab",
         &[
-            TESTED,
             slot("blend", &["count"]),
             SLAB,
+            END,
             slot("filter", &["nearest"]),
             slot("holes", &["none"]),
         ],
@@ -429,9 +429,9 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     (
         "slices_2d_slab",
         &[
-            TESTED,
             slot("blend", &["count"]),
             SLAB,
+            END,
             slot("filter", &["nearest"]),
             slot("holes", &["none"]),
         ],

@@ -93,6 +93,29 @@ pub fn domain_interval<R: Real>(frame: &Frame, world: &Ray<R>, voxel: &Ray<R>) -
     })
 }
 
+/// The parameters of a pixel whose ray ends where its depth is `depth`: `host_z` becomes the row z - depth w, which is 0 there.
+pub fn before_depth(frame: &Frame, depth: f32) -> Frame {
+    let [z, w] = [frame.host_z, frame.host_w];
+    let mut own = *frame;
+    own.host_z = std::array::from_fn(|k| z[k] - depth * w[k]);
+    own
+}
+
+/// The part of an interval that ends there: CPU reference of `shaders/lib/host_depth.wgsl`, for a host whose near plane cuts
+/// nothing.
+pub fn visible_interval<R: Real>(frame: &Frame, [t0, t1]: [R; 2], world: &Ray<R>) -> [R; 2] {
+    if frame.has_host_depth == 0 {
+        return [t0, t1];
+    }
+    let [x, y, z, w] = frame.host_z;
+    let rise = dot(vector([x, y, z]), world.direction);
+    if rise == R::from_f64(0.0) {
+        return [t0, t1];
+    }
+    let t = -(dot(vector([x, y, z]), world.origin) + R::from_f32(w)) / rise;
+    [t0, t1.min(t)]
+}
+
 /// Keeps the part of the interval with dot(plane.xyz, point) >= plane.w.
 fn clip_interval<R: Real>(interval: [R; 2], &[x, y, z, w]: &[f32; 4], world: &Ray<R>) -> [R; 2] {
     let height = dot(vector([x, y, z]), world.origin) - R::from_f32(w);

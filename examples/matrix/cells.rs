@@ -2,14 +2,16 @@
 
 use glam::{DAffine3, DMat3, DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
+use stratavox::offscreen::check_geometry;
 use stratavox::picture::ColorSpace;
 use stratavox::points::Points;
 use stratavox::scene::{Beside, Channel, Scene};
 use stratavox::technique::preclassified::preclassified;
 use stratavox::technique::splat::Splat;
 use stratavox::technique::{
-    AmbientOcclusion, ClipPlane, CutFaces, Filter, GradientFilter, GradientStorage, Lattice, Level,
-    Light, Mode, Order, PerMode, Role, Settings, Shading, Shadows, SingleScattering, Technique,
+    AmbientOcclusion, ClipPlane, CutFaces, Error, Filter, GradientFilter, GradientStorage, Lattice,
+    Level, Light, Mode, Order, PerMode, Role, Settings, Shading, Shadows, SingleScattering,
+    Technique,
 };
 use stratavox::transfer::{
     ColorPoint, GradientTransfer, Interpolation, OpacityPoint, Shape, TransferFunction, Widget,
@@ -78,6 +80,8 @@ pub enum Seen {
     Classified,
     /// Scattered points in place of a volume.
     Points,
+    /// One volume and a tube through it.
+    Tube,
 }
 
 /// Something that can be asked for beside technique, mode and filter.
@@ -274,6 +278,12 @@ pub const FEATURES: &[Feature] = &[
             s.samples_per_voxel = 2.5;
         }
     }),
+    feature(
+        "lines, spheres and surfaces in it",
+        "`--flow`, `--map`, `--barbs`, `--ground`",
+        Seen::Tube,
+        |_| {},
+    ),
     feature("noise filters", "`--denoise`", Seen::Denoised, |_| {}),
     feature("voxels without data", "", Seen::Holed, |_| {}),
     feature(
@@ -574,6 +584,18 @@ impl Matter {
         }
     }
 
+    /// Whether a scene can be drawn.
+    ///
+    /// # Errors
+    /// Its own, and that of the geometry in it.
+    pub fn check(scene: &Scene, seen: Seen) -> Result<(), Error> {
+        scene.check()?;
+        match seen {
+            Seen::Tube => check_geometry(scene.settings),
+            _ => Ok(()),
+        }
+    }
+
     /// The channels that stand beside the first volume where `seen` has such.
     pub fn channels(&self, seen: Seen) -> Vec<Channel<'_>> {
         let channel = |volume, transfer, role| Channel {
@@ -611,6 +633,7 @@ impl Matter {
             | Seen::GradientFunction
             | Seen::Holed
             | Seen::Bowl
+            | Seen::Tube
             | Seen::Denoised => Beside::Nothing,
             Seen::Points => Beside::Points(&self.points),
         };

@@ -50,7 +50,7 @@ pub fn refusal(
     let (channels, parts) = (matter.channels(feature.seen), matter.parts(feature.seen));
     let scene = matter.scene(0, feature.seen, &settings, &channels, &parts);
     let bricks = if feature.seen == Seen::Bricked { 2 } else { 1 };
-    let checked = scene.check().and_then(|()| settings.check_bricks(bricks));
+    let checked = Matter::check(&scene, feature.seen).and_then(|()| settings.check_bricks(bricks));
     checked.err().map(|error| error.to_string())
 }
 

@@ -1,4 +1,4 @@
-//! Stream lines of a field of the host's.
+//! Lines along a field of the host's: stream lines, path lines, streak lines.
 
 use super::device::sv_device;
 use super::handles::{self, Kind};
@@ -9,7 +9,7 @@ use super::volume::affine;
 use super::words::word;
 use crate::flow::{
     Direction, End, EvenLines, FieldError, GridField, Limits, Line, Metric, Snapshot,
-    even_stream_lines, stream_lines,
+    even_stream_lines, path_lines, streak_lines, stream_lines,
 };
 use crate::volume::Grid;
 use glam::DVec3;
@@ -18,7 +18,7 @@ use std::ffi::c_void;
 /// Lines that follow a field: in memory of the host's alone. 0 is none.
 pub type sv_lines = u64;
 
-/// A field of velocities, and where its stream lines begin.
+/// A field of velocities, and where its lines begin.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct sv_trace_desc {
@@ -31,13 +31,14 @@ pub struct sv_trace_desc {
     /// sv_direction.
     pub direction: u32,
     /// Three numbers a voxel, x fastest, then y, then z: along the axes of the world, world length per second; a voxel where one
-    /// of them is not finite has no data. They are read before the call returns.
+    /// of them is not finite has no data. With several times those of all voxels at the first of them, then at the second, and so
+    /// on; between two times velocities are linear. They are read before the call returns.
     pub velocities: *const f32,
     /// How many numbers there are.
     pub velocity_count: u64,
     /// As in sv_volume_desc. All zero: voxel space is the world.
     pub world_from_voxel: [f64; 16],
-    /// Three numbers each, world; or NULL: lines that are evenly spaced.
+    /// Three numbers each, world; or NULL: stream lines that are evenly spaced.
     pub seeds: *const f64,
     /// How many seeds there are.
     pub seed_count: u64,
@@ -53,6 +54,16 @@ pub struct sv_trace_desc {
     pub duration: f64,
     /// What a step may be off by, in cells of the grid. 0 is 0.001.
     pub tolerance: f64,
+    /// sv_line_kind.
+    pub kind: u32,
+    /// At how many times the velocities are given. 0 is 1; paths and streaks want 2 or more.
+    pub time_count: u32,
+    /// These times, seconds that grow; NULL where there is one.
+    pub times: *const f64,
+    /// Of stream lines the instant; of paths when particles are at the seeds; of streaks since when they leave them.
+    pub start: f64,
+    /// Of streaks the moment that shows where they are.
+    pub end: f64,
 }
 
 // SAFETY: as the trait wants it.
@@ -70,6 +81,18 @@ pub enum sv_direction {
     SV_DIRECTION_FORWARD = 1,
     /// Against it.
     SV_DIRECTION_BACKWARD = 2,
+}
+
+/// What a line is.
+#[repr(u32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum sv_line_kind {
+    /// Along the velocities of one instant.
+    SV_LINE_KIND_STREAM = 0,
+    /// The way of one particle.
+    SV_LINE_KIND_PATH = 1,
+    /// Where the particles are at one moment that left the seed one after another.
+    SV_LINE_KIND_STREAK = 2,
 }
 
 /// Why a line ends.
@@ -108,11 +131,22 @@ impl Kind for Held {
     const NAME: &'static str = "sv_lines";
 }
 
+/// What there is of [`sv_line_kind`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Lines {
+    Stream,
+    Path,
+    Streak,
+}
+
+const KINDS: [Lines; 3] = [Lines::Stream, Lines::Path, Lines::Streak];
+
 const DIRECTIONS: [Direction; 3] = [Direction::Both, Direction::Forward, Direction::Backward];
 
 /// More seeds, or numbers of a field, are not followed at once.
 const MOST_SEEDS: u64 = 1 << 24;
 const MOST_NUMBERS: u64 = 1 << 36;
+const MOST_TIMES: u64 = 1 << 16;
 
 impl From<FieldError> for Failure {
     fn from(error: FieldError) -> Self {
@@ -120,7 +154,7 @@ impl From<FieldError> for Failure {
     }
 }
 
-/// Follows stream lines of a field: by steps no longer than a cell, in 64-bit floats, one line a seed in their order, by all
+/// Follows lines of a field: by steps no longer than a cell, in 64-bit floats, one line a seed in their order, by all
 /// cores of the machine. Nothing is done on the device, which keeps the lines among its handles. Threads: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sv_trace(
@@ -171,19 +205,16 @@ pub unsafe extern "C" fn sv_lines_positions(
     count: *mut u64,
     diagnostic: *mut sv_diagnostic,
 ) -> sv_status {
-    let body = || {
-        let (_, held) = handles::find::<Held>(lines)?;
-        let numbers = held.line(line)?.vertices.iter();
-        let numbers = numbers.map(|vertex| vertex.place.to_array());
-        // SAFETY: the caller's promise.
-        unsafe { write_all(numbers, positions.cast::<[f64; 3]>(), count) }
+    let places = |line: &Line| -> Vec<_> {
+        let vertices = line.vertices.iter();
+        vertices.map(|vertex| vertex.place.to_array()).collect()
     };
     // SAFETY: the caller's promise.
-    unsafe { guard(diagnostic, body) }
+    unsafe { tell((lines, line), positions.cast(), count, diagnostic, places) }
 }
 
-/// The time since the seed, negative before it, and the speed at the vertices of one line: two doubles each. As
-/// sv_lines_positions.
+/// The time and the speed at the vertices of one line: two doubles each. Of a stream line the time since the seed, negative
+/// before it; of a path that of the particle; of a streak when the particle left. As sv_lines_positions.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sv_lines_values(
     lines: sv_lines,
@@ -192,15 +223,27 @@ pub unsafe extern "C" fn sv_lines_values(
     count: *mut u64,
     diagnostic: *mut sv_diagnostic,
 ) -> sv_status {
-    let body = || {
-        let (_, held) = handles::find::<Held>(lines)?;
-        let numbers = held.line(line)?.vertices.iter();
-        let numbers = numbers.map(|vertex| [vertex.time, vertex.speed]);
-        // SAFETY: the caller's promise.
-        unsafe { write_all(numbers, values.cast::<[f64; 2]>(), count) }
+    let numbers = |line: &Line| -> Vec<_> {
+        let vertices = line.vertices.iter();
+        vertices.map(|vertex| [vertex.time, vertex.speed]).collect()
     };
     // SAFETY: the caller's promise.
-    unsafe { guard(diagnostic, body) }
+    unsafe { tell((lines, line), values.cast(), count, diagnostic, numbers) }
+}
+
+/// The numbers of those vertices of one line, counted from 0, that no piece of the line leads to: of a streak between whose
+/// particles others are gone. As sv_lines_positions, one number each.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sv_lines_breaks(
+    lines: sv_lines,
+    line: u64,
+    breaks: *mut u64,
+    count: *mut u64,
+    diagnostic: *mut sv_diagnostic,
+) -> sv_status {
+    let numbers = |line: &Line| line.breaks.iter().map(|&vertex| vertex as u64).collect();
+    // SAFETY: the caller's promise.
+    unsafe { tell((lines, line), breaks, count, diagnostic, numbers) }
 }
 
 /// Why a line begins where it does, and why it ends: two numbers of sv_cause. Threads: any.
@@ -245,15 +288,32 @@ impl Held {
     }
 }
 
+/// Tells what is found of one line.
+///
+/// # Safety
+/// As [`write_all`]; `diagnostic` as [`guard`] wants it.
+unsafe fn tell<T>(
+    (lines, line): (sv_lines, u64),
+    values: *mut T,
+    count: *mut u64,
+    diagnostic: *mut sv_diagnostic,
+    find: impl FnOnce(&Line) -> Vec<T>,
+) -> sv_status {
+    let body = || {
+        let (_, held) = handles::find::<Held>(lines)?;
+        let found = find(held.line(line)?);
+        // SAFETY: the caller's promise.
+        unsafe { write_all(found, values, count) }
+    };
+    // SAFETY: the caller's promise.
+    unsafe { guard(diagnostic, body) }
+}
+
 /// Writes all values where there is room, and how many there are.
 ///
 /// # Safety
 /// `values` is NULL or has room for `count` of them, which is NULL or a number.
-unsafe fn write_all<T>(
-    all: impl ExactSizeIterator<Item = T>,
-    values: *mut T,
-    count: *mut u64,
-) -> Result<(), Failure> {
+unsafe fn write_all<T>(all: Vec<T>, values: *mut T, count: *mut u64) -> Result<(), Failure> {
     structure::out("the place of the number of vertices", count)?;
     let there = all.len() as u64;
     if !values.is_null() {
@@ -263,7 +323,7 @@ unsafe fn write_all<T>(
         if room < there {
             return Err(Failure::limit("write the vertices of a line", there, room));
         }
-        for (i, value) in all.enumerate() {
+        for (i, value) in all.into_iter().enumerate() {
             // SAFETY: there is room for all of them.
             unsafe { values.add(i).write(value) };
         }
@@ -281,12 +341,26 @@ unsafe fn traced(c: &sv_trace_desc) -> Result<Vec<Line>, Failure> {
         return Err(Failure::argument(text));
     }
     let product = |so_far: u64, n: &u32| so_far.checked_mul((*n).into());
-    let wanted = c.dims.iter().try_fold(3, product).unwrap_or(u64::MAX);
+    let times = c.time_count.max(1);
+    let sizes = c.dims.iter().chain([&times]);
+    let wanted = sizes.copied().try_fold(3, |n, m| product(n, &m));
+    let wanted = wanted.unwrap_or(u64::MAX);
     if wanted != c.velocity_count {
         return Err(Failure::argument(format!(
-            "sv_trace_desc.velocity_count: {:?} voxels have {wanted} numbers, found {}",
+            "sv_trace_desc.velocity_count: {:?} voxels at {times} times have {wanted} numbers, found {}",
             c.dims, c.velocity_count
         )));
+    }
+    let kind = word("sv_trace_desc.kind", &KINDS, c.kind)?;
+    if kind != Lines::Stream && times < 2 {
+        return Err(Failure::argument(format!(
+            "sv_trace_desc.time_count: {times}, wanted 2 or more for paths and streaks"
+        )));
+    }
+    if kind != Lines::Stream && c.seeds.is_null() {
+        return Err(Failure::argument(
+            "sv_trace_desc.seeds: NULL, wanted seeds: stream lines alone are evenly spaced",
+        ));
     }
     let direction = word("sv_trace_desc.direction", &DIRECTIONS, c.direction)?;
     let or = |name: &str, found: f64, default: f64| {
@@ -318,17 +392,39 @@ unsafe fn traced(c: &sv_trace_desc) -> Result<Vec<Line>, Failure> {
     let name = "sv_trace_desc.world_from_voxel: its determinant";
     number(name, "not 0", determinant, is_box)?;
     // SAFETY: the caller's promise.
-    let (velocities, seeds) = unsafe {
+    let (velocities, times, seeds) = unsafe {
         let name = "sv_trace_desc.velocities";
         let velocities = structure::array(name, c.velocities, wanted, MOST_NUMBERS)?;
         let numbers = c.seed_count.saturating_mul(3);
         let seeds = structure::array("sv_trace_desc.seeds", c.seeds, numbers, 3 * MOST_SEEDS)?;
-        (velocities.as_chunks::<3>().0, seeds.as_chunks::<3>().0)
+        let times = match c.time_count {
+            0 | 1 if c.times.is_null() => &[0.0],
+            _ => {
+                let name = "sv_trace_desc.times";
+                structure::array(name, c.times, times.into(), MOST_TIMES)?
+            }
+        };
+        (
+            velocities.as_chunks::<3>().0,
+            times,
+            seeds.as_chunks::<3>().0,
+        )
     };
     let [nx, ny, _] = c.dims.map(|n| n as usize);
     let at = |[x, y, z]: [u32; 3]| (z as usize * ny + y as usize) * nx + x as usize;
-    let wind = Snapshot::from_fn(&grid, |voxel| Some(velocities[at(voxel)]));
-    let field = GridField::new(grid, vec![(0.0, wind)], Metric::plain(1.0))?;
+    let snapshot =
+        |numbers: &[[f32; 3]]| Snapshot::from_fn(&grid, |voxel| Some(numbers[at(voxel)]));
+    let snapshots = velocities.chunks_exact(velocities.len() / times.len());
+    let snapshots = times.iter().copied().zip(snapshots.map(snapshot));
+    let field = GridField::new(grid, snapshots.collect(), Metric::plain(1.0))?;
+    let [first, last] = [times[0], times[times.len() - 1]];
+    let moment = |name: &str, found: f64, [first, last]: [f64; 2]| {
+        let is_within = (first..=last).contains(&found) || times.len() == 1 && found.is_finite();
+        let wanted = format!("{first} to {last}");
+        let name = format!("sv_trace_desc.{name}");
+        number(&name, &wanted, found, is_within).map(|()| found)
+    };
+    let start = moment("start", c.start, [first, last])?;
     if c.seeds.is_null() {
         let known = EvenLines::of(&grid, 1.0);
         let spacing = EvenLines {
@@ -340,14 +436,21 @@ unsafe fn traced(c: &sv_trace_desc) -> Result<Vec<Line>, Failure> {
             ..known
         };
         return Ok(even_stream_lines(
-            &field, 0.0, &grid, spacing, direction, &limits,
+            &field, start, &grid, spacing, direction, &limits,
         ));
     }
     let seeds = seeds
         .iter()
         .map(|&seed| finite("sv_trace_desc.seeds", seed));
     let seeds: Vec<DVec3> = seeds.collect::<Result<_, _>>()?;
-    Ok(stream_lines(&field, 0.0, &seeds, direction, &limits))
+    Ok(match kind {
+        Lines::Stream => stream_lines(&field, start, &seeds, direction, &limits),
+        Lines::Path => path_lines(&field, start, &seeds, direction, &limits),
+        Lines::Streak => {
+            let end = moment("end", c.end, [start, last])?;
+            streak_lines(&field, [start, end], &seeds, &limits)
+        }
+    })
 }
 
 #[cfg(test)]

@@ -57,8 +57,8 @@ pub use geometry::{
 pub use host::{sv_feature, sv_get_instance_proc_addr, sv_host_device, sv_limits, sv_vk_function};
 pub use images::{sv_depth_image, sv_image_state, sv_target, sv_target_class};
 pub use lines::{
-    sv_cause, sv_direction, sv_lines, sv_lines_cause, sv_lines_count, sv_lines_destroy,
-    sv_lines_positions, sv_lines_values, sv_trace, sv_trace_desc,
+    sv_cause, sv_direction, sv_line_kind, sv_lines, sv_lines_breaks, sv_lines_cause,
+    sv_lines_count, sv_lines_destroy, sv_lines_positions, sv_lines_values, sv_trace, sv_trace_desc,
 };
 pub use parts::{
     sv_pacing, sv_renderer_begin_parts, sv_renderer_record_part_into, sv_submitter_submit_in_parts,

@@ -172,6 +172,10 @@ impl From<offscreen::Error> for Error {
             offscreen::Error::NoLabels => {
                 Self::usage(error.to_string(), "--labels FILE lays a map over INPUT")
             }
+            offscreen::Error::NoLines => Self::usage(
+                error.to_string(),
+                "--flow stream draws lines along the wind",
+            ),
             offscreen::Error::Read(error) => Self::Read(error),
             offscreen::Error::NotStreamed { .. } | offscreen::Error::Outline => Self::usage(
                 error.to_string(),

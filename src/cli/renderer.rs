@@ -243,6 +243,10 @@ impl<'a> Renderer<'a> {
         let prepare_ms = device.found_ms + ms_since(start);
         let start = Instant::now();
         let scene = job.scene(camera);
+        if let Some(lines) = job.lines {
+            let geometry = lines.geometry(camera, job.extent_pixels);
+            renderer.set_geometry(Some(Arc::new(geometry)));
+        }
         renderer.upload(&scene)?;
         let upload_ms = ms_since(start);
         let start = Instant::now();
@@ -348,8 +352,16 @@ impl<'a> Renderer<'a> {
         self.put_lines(camera, extent_pixels);
         match &mut self.on_device {
             Some(renderer) => Ok(renderer.render(&scene, &[])?.picture),
-            None => Ok(reference::render::<f32>(&scene).map_err(offscreen::Error::Technique)?),
+            None => self.reference(&scene),
         }
+    }
+
+    /// What the CPU references draw.
+    fn reference(&self, scene: &Scene) -> Result<Picture, Error> {
+        let lines = self.job.lines;
+        let geometry = lines.map(|lines| lines.geometry(scene.camera, scene.extent_pixels));
+        let picture = reference::render_with::<f32>(scene, geometry.as_ref());
+        Ok(picture.map_err(offscreen::Error::Technique)?)
     }
 
     /// Lines are as wide as pixels of the camera say.
@@ -369,7 +381,7 @@ impl<'a> Renderer<'a> {
                 gpu_ms: rendered.gpu_ms,
             });
         }
-        let mut picture = reference::render::<f32>(&scene).map_err(offscreen::Error::Technique)?;
+        let mut picture = self.reference(&scene)?;
         let mut made = std::mem::take(&mut picture.layers);
         for kind in layers {
             let at = made.iter().position(|layer| layer.kind == *kind);
@@ -501,6 +513,7 @@ fn check_layers(job: &Job) -> Result<(), Error> {
                 LayerKind::Label if !has_labels(job) => {
                     "labels: --labels FILE, or a volume of labels with --filter nearest"
                 }
+                LayerKind::Line if job.lines.is_none() => "lines: --flow stream",
                 LayerKind::Normal if job.stream.is_some() => "the voxels in memory: no --stream",
                 LayerKind::Normal if !is_of_one && job.settings.mode != Mode::Iso => {
                     one_number(&job.beside)

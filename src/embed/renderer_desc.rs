@@ -229,15 +229,11 @@ impl RendererDesc {
         is_sliced && self.slice_blending == SliceBlending::Float
     }
 
-    /// What hides samples of slices. Slabs, which reach out of the slices that would be tested, and projections read the
-    /// host's depth.
+    /// What hides samples of slices.
     pub(super) fn depth_access(&self) -> DepthAccess {
-        let settings = &self.settings;
-        let is_read = settings.mode != Mode::Composite || settings.preintegrated;
-        match (self.host_depth, is_read) {
-            (false, _) => DepthAccess::None,
-            (true, true) => DepthAccess::Sampled,
-            (true, false) => DepthAccess::Tested,
+        match self.host_depth {
+            false => DepthAccess::None,
+            true => DepthAccess::behind(&self.settings),
         }
     }
 

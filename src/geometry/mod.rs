@@ -82,6 +82,8 @@ struct Segment {
     ends: [u32; 2],
     /// No plane cuts it.
     is_whole: bool,
+    /// The number of its line; 0 is none.
+    line: u32,
 }
 
 impl RoundCones {
@@ -90,9 +92,18 @@ impl RoundCones {
     /// # Panics
     /// Where there would be more than 2^32 vertices.
     pub fn add_line(&mut self, vertices: impl IntoIterator<Item = Vertex>) {
+        self.add_line_of(0, vertices);
+    }
+
+    /// The same with a number that [`Seen::lines`] tells; 0 is none.
+    ///
+    /// # Panics
+    /// As [`Self::add_line`].
+    pub fn add_line_of(&mut self, number: u32, vertices: impl IntoIterator<Item = Vertex>) {
         let segment = |a: usize, b: usize| Segment {
             ends: [a, b].map(|n| u32::try_from(n).expect("at most 2^32 vertices")),
             is_whole: false,
+            line: number,
         };
         let first = self.vertices.len();
         self.vertices.extend(vertices);

@@ -31,6 +31,8 @@ pub struct Seen {
     pub pixels: Vec<[f32; 4]>,
     /// World length along the ray from its origin; infinite where nothing is met.
     pub distances: Vec<f64>,
+    /// The number of the line that is met ([`super::RoundCones::add_line_of`]); 0 where that is none.
+    pub lines: Vec<u32>,
 }
 
 /// One of all.
@@ -101,23 +103,26 @@ impl Geometry {
         let mut seen = Seen {
             pixels: vec![[0.0; 4]; count],
             distances: vec![f64::INFINITY; count],
+            lines: vec![0; count],
         };
         let rays = camera.rays(extent);
         let size = (width * BAND) as usize;
         let work = seen
             .pixels
             .chunks_mut(size.max(1))
-            .zip(seen.distances.chunks_mut(size.max(1)));
+            .zip(seen.distances.chunks_mut(size.max(1)))
+            .zip(seen.lines.chunks_mut(size.max(1)));
         let work = std::sync::Mutex::new(work.zip(&of_band).enumerate());
         let draw = || {
             loop {
                 let next = work.lock().expect("no worker panics").next();
-                let Some((band, ((pixels, distances), shapes))) = next else {
+                let Some((band, (((pixels, distances), lines), shapes))) = next else {
                     return;
                 };
                 let top = band as u32 * BAND;
                 for candidate in shapes {
                     let shape = self.placed(candidate.shape);
+                    let line = self.line_of(candidate.shape);
                     let planes = if self.is_whole(candidate.shape) {
                         &[]
                     } else {
@@ -130,7 +135,7 @@ impl Geometry {
                             let i = ((y - top) * width + x) as usize;
                             let nearer = shape.nearer([origin, direction], planes, distances[i]);
                             if let Some((distance, color)) = nearer {
-                                (distances[i], pixels[i]) = (distance, color);
+                                (distances[i], pixels[i], lines[i]) = (distance, color, line);
                             }
                         }
                     }
@@ -145,6 +150,14 @@ impl Geometry {
             draw();
         });
         seen
+    }
+
+    /// The number of its line.
+    fn line_of(&self, shape: Shape) -> u32 {
+        match shape {
+            Shape::Cone(segment) => self.cones.segments[segment].line,
+            Shape::Triangle(_) => 0,
+        }
     }
 
     /// Whether no plane cuts it.

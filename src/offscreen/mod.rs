@@ -2,6 +2,7 @@
 //!
 //! The only place that submits and waits.
 
+mod behind;
 mod denoise;
 mod fade;
 mod gathered;
@@ -21,9 +22,10 @@ mod targets;
 mod time_slices;
 mod upload;
 
+pub use behind::check_geometry;
 pub use denoise::denoised;
 pub use probe::{Ceilings, ceilings};
-pub use renderer::{Filtered, Kept, PathSums, Rendered, Renderer, Traced, check_geometry};
+pub use renderer::{Filtered, Kept, PathSums, Rendered, Renderer, Traced};
 pub use stream::{Stream, StreamOptions};
 
 /// Why there is no picture.
@@ -53,6 +55,9 @@ pub enum Error {
     /// The layer of normals, of what is no single volume in memory.
     #[error("the layer `normal` is for one volume of numbers in memory")]
     NoNormals,
+    /// The layer of lines, in a picture without geometry.
+    #[error("the layer `line` is for pictures with geometry")]
+    NoLines,
     /// A brick of a [`Stream`] cannot be read.
     #[error(transparent)]
     Read(#[from] crate::volume::ReadError),

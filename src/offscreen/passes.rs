@@ -25,11 +25,17 @@ pub type Key = (
     Order,
     [bool; 4],
     (Sheets, bool),
+    DepthAccess,
     ShaderVariant,
 );
 
-/// The key of such pictures.
-pub fn key_of(settings: &Settings, variant: &ShaderVariant, is_patched: bool) -> Key {
+/// The key of such pictures; `is_patched`: slicers draw patches of their slices.
+pub fn key_of(
+    settings: &Settings,
+    variant: &ShaderVariant,
+    is_patched: bool,
+    depth_access: DepthAccess,
+) -> Key {
     let Settings {
         technique,
         mode,
@@ -46,6 +52,7 @@ pub fn key_of(settings: &Settings, variant: &ShaderVariant, is_patched: bool) ->
         order,
         marks,
         (settings.splat.sheets, settings.splat.of_points),
+        depth_access,
         *variant,
     )
 }
@@ -63,15 +70,9 @@ pub struct Passes {
 }
 
 impl Passes {
-    /// Compiles for such pictures; `is_patched`: slicers draw patches of their slices.
-    pub fn new(
-        gpu: &Arc<Gpu>,
-        settings: &Settings,
-        variant: &ShaderVariant,
-        is_patched: bool,
-    ) -> Result<Self, Error> {
+    /// Compiles for such pictures.
+    pub fn new(gpu: &Arc<Gpu>, settings: &Settings, key: Key) -> Result<Self, Error> {
         let mode = settings.mode;
-        let key = key_of(settings, variant, is_patched);
         Ok(Self {
             picture: gather(gpu, settings, &key, Drawn::Picture(mode))?,
             count: OnceCell::new(),
@@ -238,13 +239,13 @@ fn gather(
     key: &Key,
     drawn: Drawn,
 ) -> Result<Box<dyn Gather>, Error> {
-    let (.., [.., is_patched], _, variant) = key;
+    let (.., [.., is_patched], _, depth_access, variant) = key;
     (settings.technique.desc().gather)(&GatherDesc {
         gpu,
         settings,
         variant,
         drawn,
-        depth_access: DepthAccess::None,
+        depth_access: *depth_access,
         is_patched: *is_patched,
     })
 }

@@ -5,10 +5,13 @@ mod light;
 mod material;
 mod mixture;
 mod normals;
+mod samples;
 
+use super::behind;
 use super::fade::{faded, stacks_of};
 use super::gathered::{grey_of_picture, layers};
 use super::sum::sum_of;
+use crate::geometry::{Geometry, Seen};
 use crate::picture::Picture;
 use crate::real::{Real, scale};
 use crate::resolve::reference::{light_at, premultiplied};
@@ -23,51 +26,76 @@ use crate::technique::reference::{Gathered, Samples, moved};
 use crate::technique::shading::shade;
 use crate::technique::splat::ViewPoints;
 use crate::technique::{
-    AlikeCells, Error, Filter, GradientSource, InPixel, LightField, Mode, Recording, Role,
-    SampleInputs, Settings, isosurface,
+    AlikeCells, Error, GradientSource, InPixel, LightField, Mode, Recording, Role, SampleInputs,
+    Settings, isosurface,
 };
 use crate::transfer::{
     Absorption, PackedWidgets, Points, SlabTable, Table, TransferFunction, classify_by_points,
     classify_by_table, classify_slab,
 };
-use crate::volume::kernel::{convolved, convolved_in_slice};
-use crate::volume::sample::{linear, linear_in_slice, nearest};
 use crate::volume::{Coefficients, Grid, Volume};
+use glam::DVec4;
 use light::light_of;
 use material::{gradient_at, steepness};
 use mixture::marks_of_scene;
 pub(super) use normals::normals;
+use samples::{filtered, filtered_in_slice};
 
 /// The picture of `scene` with all layers that its technique has.
 ///
 /// # Errors
 /// Those of the parameters, too many samples or clip planes, and of volumes that cannot be put together.
 pub fn render<R: Real>(scene: &Scene) -> Result<Picture, Error> {
+    render_with::<R>(scene, None)
+}
+
+/// The same with geometry in the picture.
+///
+/// # Errors
+/// Those of [`render`] and of [`check_geometry`](super::check_geometry).
+pub fn render_with<R: Real>(scene: &Scene, geometry: Option<&Geometry>) -> Result<Picture, Error> {
     scene.check()?;
+    if geometry.is_some() {
+        behind::check_geometry(scene.settings)?;
+    }
     let labels = scene.labels_over();
-    let mut picture = render_unlabeled::<R>(&scene.under_labels())?;
+    let mut picture = render_unlabeled::<R>(&scene.under_labels(), geometry)?;
     for map in labels {
         if let Some(over) = LabelsOver::new(scene, map) {
-            over.lay(scene, map, &mut picture, render_one::<R>)?;
+            // Labels lie over the geometry too.
+            over.lay(scene, map, &mut picture, |scene| {
+                render_one::<R>(scene, None)
+            })?;
         }
     }
+    let lines = geometry.map(|geometry| behind::lines(geometry, scene));
+    picture.layers.extend(lines);
     Ok(picture)
 }
 
 /// The same without labels over it.
-fn render_unlabeled<R: Real>(scene: &Scene) -> Result<Picture, Error> {
+fn render_unlabeled<R: Real>(scene: &Scene, geometry: Option<&Geometry>) -> Result<Picture, Error> {
     let stacks = stacks_of(scene);
     if !stacks.is_empty() {
         return faded(stacks.iter().map(|(settings, share)| {
-            let picture = render_one::<R>(&Scene { settings, ..*scene })?;
+            let picture = render_one::<R>(&Scene { settings, ..*scene }, geometry)?;
             Ok((picture, *share))
         }));
     }
     if scene.mix() == SampleInputs::Channels && scene.settings.mode.is_projection() {
         let pictures = scene.projected().into_iter();
-        return sum_of(pictures.map(|one| render_one::<R>(&one)));
+        let mut sum = sum_of(pictures.map(|one| render_one::<R>(&one, None)))?;
+        put_over(scene, geometry, &mut sum);
+        return Ok(sum);
     }
-    render_one::<R>(scene)
+    render_one::<R>(scene, geometry)
+}
+
+/// Lays geometry over the picture of a mode that projects.
+fn put_over(scene: &Scene, geometry: Option<&Geometry>, picture: &mut Picture) {
+    if let Some(geometry) = geometry.filter(|_| scene.settings.mode.is_projection()) {
+        behind::put_over(scene, picture, |at| behind::seen(geometry, scene, at));
+    }
 }
 
 /// Paths in two halves, and what both say without noise.
@@ -83,7 +111,7 @@ fn render_denoised<R: Real>(scene: &Scene) -> Result<Picture, Error> {
             },
             ..scene.settings.clone()
         };
-        render_one::<R>(&Scene { settings, ..*scene })
+        render_one::<R>(&Scene { settings, ..*scene }, None)
     };
     let half = path.samples.div_ceil(2);
     let first = of_half(path.first_sample, half)?;
@@ -92,7 +120,7 @@ fn render_denoised<R: Real>(scene: &Scene) -> Result<Picture, Error> {
     Ok(Picture { pixels, ..first })
 }
 
-fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
+fn render_one<R: Real>(scene: &Scene, geometry: Option<&Geometry>) -> Result<Picture, Error> {
     let settings = scene.settings;
     if settings.technique.traces_paths() && settings.path.denoise {
         return render_denoised::<R>(scene);
@@ -115,16 +143,22 @@ fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
         .map_or(scene.volume, Coefficients::volume);
     let gradients = source.map(|_| of_gradients);
     let light = light_of::<R>(scene, read, gradients, &grid)?;
-    let gathered = |in_pixel: InPixel| -> Result<_, Error> {
+    let gathered = |in_pixel: InPixel, seen: Option<&Seen>| -> Result<_, Error> {
         let rays = ReferenceRays::new(scene, read, light.as_ref(), &grid, in_pixel)?;
-        let rays = ReferenceRays { gradients, ..rays };
+        let mut rays = ReferenceRays { gradients, ..rays };
+        if let Some(seen) = seen {
+            rays.end_at(in_pixel, seen);
+        }
         if scene.settings.is_half_angle() {
             let [_, light] = scene.view(&grid, in_pixel).half_angle_on_cpu()?;
             return Ok(rays.gather_in_light(&light));
         }
         Ok(rays.gather_all())
     };
-    let centers = gathered(InPixel::CENTER)?;
+    let geometry_behind = geometry.filter(|_| !mode.is_projection());
+    let look = |in_pixel| geometry_behind.map(|geometry| behind::seen(geometry, scene, in_pixel));
+    let seen_of_centers = look(InPixel::CENTER);
+    let centers = gathered(InPixel::CENTER, seen_of_centers.as_ref())?;
     let transfer = match scene.transfer {
         Some(transfer) => transfer.clone(),
         None => grey_of_picture(mode, &centers),
@@ -148,24 +182,31 @@ fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
     let weight = R::from_f64(1.0 / f64::from(per_side * per_side));
     let mut pixels = vec![[R::from_f64(0.0); 4]; centers.len()];
     for in_pixel in positions_in_pixel(scene.settings) {
-        let found = if in_pixel == InPixel::CENTER {
-            centers.clone()
+        let (found, seen) = if in_pixel == InPixel::CENTER {
+            (centers.clone(), seen_of_centers.clone())
         } else {
-            gathered(in_pixel)?
+            let seen = look(in_pixel);
+            (gathered(in_pixel, seen.as_ref())?, seen)
         };
-        for (pixel, found) in pixels.iter_mut().zip(&found) {
-            let color = resolve(found).map(R::ended);
+        let mut colors: Vec<_> = found.iter().map(resolve).collect();
+        if let Some(seen) = seen {
+            behind::put(&seen, &mut colors, space);
+        }
+        for (pixel, color) in pixels.iter_mut().zip(colors) {
+            let color = color.map(R::ended);
             *pixel = std::array::from_fn(|c| pixel[c] + weight * color[c]);
         }
     }
     let [width, height] = scene.extent_pixels;
-    Ok(Picture {
+    let mut picture = Picture {
         width,
         height,
         pixels: pixels.iter().map(|pixel| pixel.map(R::to_f32)).collect(),
         color_space: space,
         layers: layers(scene, &centers)?,
-    })
+    };
+    put_over(scene, geometry, &mut picture);
+    Ok(picture)
 }
 
 /// The rays of all pixels of a picture.
@@ -192,6 +233,8 @@ struct ReferenceRays<'a, R> {
     points: Option<ViewPoints>,
     /// Slices to draw; a ray caster has none.
     slices: u32,
+    /// The depths at which the rays of pixels end, where something is drawn beside the volume.
+    ends: Option<Vec<f32>>,
 }
 
 /// Conformance pictures search the points, the others look into the table: both as the shaders do.
@@ -263,7 +306,18 @@ impl<'a, R: Real> ReferenceRays<'a, R> {
                 _ => None,
             },
             slices,
+            ends: None,
         })
+    }
+
+    /// Ends rays at what is seen.
+    fn end_at(&mut self, in_pixel: InPixel, seen: &Seen) {
+        let depth = behind::line_of_sight(self.scene);
+        let row = |row: DVec4| row.as_vec4().to_array();
+        let centered = depth.centered(self.scene.volume.grid().center());
+        self.frame.has_host_depth = 1;
+        (self.frame.host_z, self.frame.host_w) = (row(centered.z), row(centered.w));
+        self.ends = Some(behind::depths(&depth, self.scene, in_pixel, seen));
     }
 
     /// All pixels, rows shared out among the machine's cores.
@@ -315,7 +369,7 @@ impl<'a, R: Real> ReferenceRays<'a, R> {
 
     /// The surfaces that a ray meets.
     fn surfaces(&self, pixel: [R; 2]) -> Gathered<R> {
-        let (frame, filter) = (&self.frame, self.scene.settings.filter);
+        let (frame, filter) = (&self.frame_of(pixel), self.scene.settings.filter);
         let value_at = |p| filtered(self.volumes[0], filter, p);
         let lit = |own: [R; 3], p, ray_direction| {
             let other = self.volumes.get(1).zip(self.paint.as_ref());
@@ -338,7 +392,7 @@ impl<'a, R: Real> ReferenceRays<'a, R> {
 
     /// Emission and absorption of what the volumes are made of together, behind what a cut has laid bare.
     fn composite(&self, pixel: [R; 2]) -> Gathered<R> {
-        let Some((t, p)) = cut_face(&self.frame, pixel) else {
+        let Some((t, p)) = cut_face(&self.frame_of(pixel), pixel) else {
             return self.samples(pixel);
         };
         // No light falls along no direction.
@@ -385,103 +439,6 @@ impl<'a, R: Real> ReferenceRays<'a, R> {
     }
 }
 
-impl<R: Real> Samples<R> for ReferenceRays<'_, R> {
-    fn frame(&self) -> &Frame {
-        &self.frame
-    }
-
-    fn settings(&self) -> &Settings {
-        self.scene.settings
-    }
-
-    fn slice_count(&self) -> u32 {
-        self.slices
-    }
-
-    fn dim(&self, axis: usize) -> u32 {
-        self.volumes[0].dims[axis]
-    }
-
-    fn value(&self, p: [R; 3]) -> Option<R> {
-        filtered(self.volumes[0], self.scene.settings.filter, p)
-    }
-
-    fn value_in_slice(&self, axis: usize, slice: u32, p: [R; 3]) -> Option<R> {
-        filtered_in_slice(self.volumes[0], self.scene.settings.filter, axis, slice, p)
-    }
-
-    fn voxel(&self, index: [i32; 3]) -> Option<R> {
-        nearest(
-            self.volumes[0],
-            index.map(|i| R::from_f64(f64::from(i) + 0.5)),
-        )
-    }
-
-    fn is_classified(&self) -> bool {
-        matches!(self.scene.beside, Beside::Classified(_))
-    }
-
-    fn classified_voxel(&self, index: [i32; 3]) -> Option<[R; 4]> {
-        let center = index.map(|i| R::from_f64(f64::from(i) + 0.5));
-        let mut found = [R::from_f64(0.0); 4];
-        for (number, volume) in found.iter_mut().zip(&self.volumes) {
-            *number = nearest(volume, center)?;
-        }
-        Some(found)
-    }
-
-    fn points(&self) -> Option<&ViewPoints> {
-        self.points.as_ref()
-    }
-
-    fn material(&self, p: [R; 3], ray_direction: [R; 3]) -> Option<[R; 4]> {
-        let look = |volume: &_, filter, step| filtered(volume, filter, moved(p, step));
-        self.mixed(look, p, ray_direction)
-    }
-
-    fn material_in_slice(
-        &self,
-        axis: usize,
-        slice: u32,
-        p: [R; 3],
-        ray_direction: [R; 3],
-    ) -> Option<[R; 4]> {
-        let look = |volume: &Volume, filter, step: [i32; 3]| {
-            let last = volume.dims[axis] - 1;
-            let slice = slice.saturating_add_signed(step[axis]).min(last);
-            filtered_in_slice(volume, filter, axis, slice, moved(p, step))
-        };
-        let mut on_slice = p;
-        on_slice[axis] = R::from_f64(f64::from(slice) + 0.5);
-        self.mixed(look, on_slice, ray_direction)
-    }
-
-    fn classify(&self, value: R) -> [R; 4] {
-        self.classified(0, value)
-    }
-
-    fn classify_slab(&self, [front, back]: [R; 2]) -> [R; 4] {
-        match &self.classifiers[0] {
-            Classifier::Slabs(slabs) => classify_slab(slabs, front, back),
-            Classifier::Table(_) | Classifier::Points(_) => self.classified(0, front),
-        }
-    }
-
-    fn lit(
-        &self,
-        material: [R; 4],
-        p: [R; 3],
-        ray_direction: [R; 3],
-        tap: impl Fn([i32; 3]) -> Option<R>,
-    ) -> [R; 4] {
-        self.lit_by(material, p, ray_direction, || self.gradient(p, tap))
-    }
-
-    fn alike(&self) -> Option<&AlikeCells> {
-        self.alike.as_ref()
-    }
-}
-
 /// The function of the volume that colours surfaces.
 fn paint_of(scene: &Scene) -> Option<Points> {
     let function = scene.transfers().get(1).copied().flatten();
@@ -491,29 +448,4 @@ fn paint_of(scene: &Scene) -> Option<Points> {
     };
     let space = scene.settings.color_space;
     Some(Points::new(function, absorption, space))
-}
-
-fn filtered<R: Real>(volume: &Volume, filter: Filter, p: [R; 3]) -> Option<R> {
-    match filter {
-        Filter::Nearest => nearest(volume, p),
-        Filter::Linear => linear(volume, p),
-        filter => convolved(volume, filter.kernel()?, p),
-    }
-}
-
-fn filtered_in_slice<R: Real>(
-    volume: &Volume,
-    filter: Filter,
-    axis: usize,
-    slice: u32,
-    mut p: [R; 3],
-) -> Option<R> {
-    match filter {
-        Filter::Nearest => {
-            p[axis] = R::from_f64(f64::from(slice) + 0.5);
-            nearest(volume, p)
-        }
-        Filter::Linear => linear_in_slice(volume, axis, slice, p),
-        filter => convolved_in_slice(volume, filter.kernel()?, axis, slice, p),
-    }
 }

@@ -13,6 +13,7 @@ mod copied;
 mod filtered;
 mod gather;
 mod kept;
+mod labelled;
 mod pacing;
 mod path_sky;
 mod path_sums;
@@ -37,17 +38,16 @@ use super::upload::{keep, upload, upload_with_gradient_source};
 use crate::gpu::{Headless, ParameterRing, Timer};
 use crate::picture::{ColorSpace, LayerKind, Picture};
 use crate::resident::{GpuTransfer, GpuVolume};
-use crate::scene::{Beside, LabelsOver, Scene, positions_in_pixel};
+use crate::scene::{Beside, Scene, positions_in_pixel};
 use crate::technique::cost::ms_of_fetches;
 use crate::technique::gather::{CanvasDesc, PICTURE};
 use crate::technique::{
-    self, Functions, GpuChannel, InPixel, LightPlan, LightVolume, Mode, Role, SampleInputs,
-    ShaderVariant, parameter_ring,
+    self, DepthAccess, Functions, GpuChannel, InPixel, LightPlan, LightVolume, Mode, Role,
+    SampleInputs, ShaderVariant, parameter_ring,
 };
 use crate::transfer::{GradientTransfer, TransferFunction};
 use crate::volume::Volume;
 use behind::Behind;
-pub use behind::check_geometry;
 use copied::Copied;
 pub use filtered::Filtered;
 use gather::points_at_once;
@@ -246,44 +246,19 @@ impl<'v> Renderer<'v> {
     /// # Errors
     /// Parameters out of range, a limit of the device, a layer that the technique does not have.
     pub fn render(&mut self, scene: &Scene, layers: &[LayerKind]) -> Result<Rendered, Error> {
-        scene.check()?;
-        let labels = scene.labels_over();
-        if labels.is_empty() {
-            return self.render_unlabeled(scene, layers);
+        let of_volume = layers.iter().copied();
+        let of_volume: Vec<_> = of_volume.filter(|kind| *kind != LayerKind::Line).collect();
+        let lines = match of_volume.len() < layers.len() {
+            true => Some(self.lines(scene)?),
+            false => None,
+        };
+        let mut rendered = self.render_volume(scene, &of_volume)?;
+        if let Some(lines) = lines {
+            let kept = &mut rendered.picture.layers;
+            let at = layers.iter().position(|kind| *kind == LayerKind::Line);
+            kept.insert(at.unwrap_or(kept.len()), lines);
         }
-        let under = scene.under_labels();
-        let first = under.volumes().len();
-        let mut rendered = self.render_unlabeled(&under, layers)?;
-        // Labels lie over the geometry too.
-        let behind = self.behind.take();
-        let laid = self.lay_labels(scene, first, &mut rendered);
-        self.behind = behind;
-        laid?;
         Ok(rendered)
-    }
-
-    fn lay_labels(
-        &mut self,
-        scene: &Scene,
-        first: usize,
-        rendered: &mut Rendered,
-    ) -> Result<(), Error> {
-        let labels = scene.labels_over();
-        let mut clock = Clock(rendered.gpu_ms);
-        for (shown, map) in (first..).zip(labels) {
-            let Some(over) = LabelsOver::new(scene, map) else {
-                continue;
-            };
-            self.shown = shown;
-            let laid = over.lay(scene, map, &mut rendered.picture, |labels| {
-                self.upload(labels)?;
-                self.picture(labels, &[], &mut clock)
-            });
-            self.shown = 0;
-            laid?;
-        }
-        rendered.gpu_ms = clock.0;
-        Ok(())
     }
 
     /// The same without labels over it.
@@ -387,7 +362,7 @@ impl<'v> Renderer<'v> {
             self.look_behind(scene, in_pixel)?;
             let (mut colors, gpu_ms) = self.colors(scene, in_pixel)?;
             clock.add(gpu_ms);
-            if let (Some(behind), false) = (&self.behind, scene.settings.mode.is_projection()) {
+            if let Some(behind) = &self.behind {
                 behind.put(&mut colors, scene.settings);
             }
             mean.add(colors);
@@ -439,9 +414,14 @@ impl<'v> Renderer<'v> {
         if self.ring.slots() < slots {
             self.ring = parameter_ring(&gpu, slots)?;
         }
-        let patches = self.patches_for(scene)?;
+        let depth_access = self.depth_access(scene.settings);
+        let patches = match depth_access {
+            DepthAccess::None => self.patches_for(scene)?,
+            // Lists know nothing of what hides them.
+            DepthAccess::Tested | DepthAccess::Sampled => None,
+        };
         let is_patched = patches.is_some();
-        let key = key_of(scene.settings, &variant, is_patched);
+        let key = key_of(scene.settings, &variant, is_patched, depth_access);
         let grid = scene.volume.grid();
         let view = scene.view(&grid, [0.0; 2]);
         let desc = CanvasDesc {
@@ -455,7 +435,7 @@ impl<'v> Renderer<'v> {
             Some(passes) if *passes.key() == key => passes,
             _ => {
                 self.targets = None;
-                Passes::new(&gpu, scene.settings, &variant, is_patched)?
+                Passes::new(&gpu, scene.settings, key)?
             }
         };
         let targets = match self.targets.take() {

@@ -76,6 +76,8 @@ pub enum LayerKind {
     Normal,
     /// The label at the first hit.
     Label,
+    /// The number of the line that is seen, counted from 1 as seeds are; 0 where none is.
+    Line,
     /// Path tracing: the standard error of luminance, linear; NaN where too few paths tell.
     Noise,
     /// Marks that lie over the picture: linear light times opacity, and opacity. No renderer makes it.
@@ -84,7 +86,7 @@ pub enum LayerKind {
 
 impl LayerKind {
     /// All that renderers make, in the order of `--aov`'s help.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Value,
         Self::Depth,
         Self::Transmittance,
@@ -92,6 +94,7 @@ impl LayerKind {
         Self::Position,
         Self::Normal,
         Self::Label,
+        Self::Line,
         Self::Noise,
     ];
 
@@ -105,6 +108,7 @@ impl LayerKind {
             Self::Position => "position",
             Self::Normal => "normal",
             Self::Label => "label",
+            Self::Line => "line",
             Self::Noise => "noise",
             Self::Annotation => "annotation",
         }

@@ -99,7 +99,7 @@ impl Drawn {
                 format!("{slicer}.composite{mix}.{filter}.{holes}.{transfer}{light}")
             }
             Self::Picture(_) => format!("{slicer}.number{depth_access}.{filter}.{holes}"),
-            Self::Count => format!("{slicer}.count.nearest.none"),
+            Self::Count => format!("{slicer}.count{depth_access}.nearest.none"),
         }
     }
 }

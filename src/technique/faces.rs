@@ -8,7 +8,7 @@
 
 use super::{CutFaces, Settings};
 use crate::color::decode_srgb;
-use crate::ray::{domain_interval, pixel_ray, voxel_ray};
+use crate::ray::{domain_interval, pixel_ray, visible_interval, voxel_ray};
 use crate::real::Real;
 use crate::shaders::Frame;
 
@@ -47,7 +47,7 @@ pub fn cut_face<R: Real>(frame: &Frame, pixel: [R; 2]) -> Option<(R, [R; 3])> {
     }
     let world = pixel_ray(frame, pixel);
     let voxel = voxel_ray(frame, &world);
-    let [t0, t1] = domain_interval(frame, &world, &voxel);
+    let [t0, t1] = visible_interval(frame, domain_interval(frame, &world, &voxel), &world);
     if t0 >= t1 {
         return None;
     }

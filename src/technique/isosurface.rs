@@ -9,7 +9,7 @@
 //! C += T a c        T *= 1 - a        c, a of the level, c lit by the gradient at the crossing
 //! ```
 
-use crate::ray::{domain_interval, pixel_ray, voxel_ray};
+use crate::ray::{domain_interval, pixel_ray, visible_interval, voxel_ray};
 use crate::real::{Real, add, scale};
 use crate::shaders::Frame;
 
@@ -53,7 +53,7 @@ pub fn surfaces<R: Real>(
     };
     let world = pixel_ray(frame, pixel);
     let voxel = voxel_ray(frame, &world);
-    let [t0, t1] = domain_interval(frame, &world, &voxel);
+    let [t0, t1] = visible_interval(frame, domain_interval(frame, &world, &voxel), &world);
     if t0 >= t1 {
         return so_far;
     }

@@ -27,14 +27,14 @@ pub(crate) enum Lack {
 
 impl Settings {
     /// Whether it splats scattered points, which are thick.
-    fn has_balls(&self) -> bool {
+    pub(crate) fn has_balls(&self) -> bool {
         self.technique.splats() && self.splat.of_points
     }
 
     /// What pictures of these settings lack for a layer, one volume's or, with `are_several`, that of several.
     pub(crate) fn lack(&self, layer: LayerKind, are_several: bool) -> Option<Lack> {
         use LayerKind::{
-            Annotation, Depth, Label, Noise, Normal, Position, Samples, Transmittance, Value,
+            Annotation, Depth, Label, Line, Noise, Normal, Position, Samples, Transmittance, Value,
         };
         let (technique, mode) = (self.technique, self.mode);
         let is_sum = are_several && mode.is_projection();
@@ -57,7 +57,8 @@ impl Settings {
                 Some(Lack::Depth)
             }
             Position | Normal | Label if !mode.has_depth() => Some(Lack::Depth),
-            Depth | Position | Normal | Label | Samples => None,
+            // It is of what is drawn beside the volume.
+            Depth | Position | Normal | Label | Samples | Line => None,
             Annotation => Some(Lack::Annotation),
         }
     }

@@ -4,7 +4,7 @@ use super::Lattice;
 use crate::lattice::{
     Segment, Slab, along_ray, on_main_axis, on_planes, slabs_along_ray, slabs_on_planes,
 };
-use crate::ray::{domain_interval, pixel_ray, voxel_ray};
+use crate::ray::{domain_interval, pixel_ray, visible_interval, voxel_ray};
 use crate::real::Real;
 use crate::shaders::Frame;
 use std::ops::ControlFlow;
@@ -20,7 +20,7 @@ pub fn march<R: Real, V>(
 ) -> u32 {
     let world = pixel_ray(frame, pixel);
     let voxel = voxel_ray(frame, &world);
-    let interval = domain_interval(frame, &world, &voxel);
+    let interval = visible_interval(frame, domain_interval(frame, &world, &voxel), &world);
     if interval[0] >= interval[1] {
         return 0;
     }
@@ -55,7 +55,7 @@ pub fn march_in_runs<R: Real, V>(
 ) -> u32 {
     let world = pixel_ray(frame, pixel);
     let voxel = voxel_ray(frame, &world);
-    let interval = domain_interval(frame, &world, &voxel);
+    let interval = visible_interval(frame, domain_interval(frame, &world, &voxel), &world);
     if interval[0] >= interval[1] {
         return 0;
     }
@@ -97,7 +97,7 @@ pub fn march_slabs<R: Real>(
 ) -> u32 {
     let world = pixel_ray(frame, pixel);
     let voxel = voxel_ray(frame, &world);
-    let interval = domain_interval(frame, &world, &voxel);
+    let interval = visible_interval(frame, domain_interval(frame, &world, &voxel), &world);
     if interval[0] >= interval[1] {
         return 0;
     }

@@ -17,6 +17,10 @@ use crate::shaders::Frame;
 pub trait Samples<R: Real> {
     /// The parameters of the picture.
     fn frame(&self) -> &Frame;
+    /// Those of the ray of a pixel, which ends at what is drawn there.
+    fn frame_of(&self, _pixel: [R; 2]) -> Frame {
+        *self.frame()
+    }
     /// What to compute.
     fn settings(&self) -> &Settings;
     /// Slices to draw.

@@ -2,7 +2,7 @@
 //! the blending unit, all slices of a picture in one instanced draw.
 
 use super::blend::{Drawn, operator};
-use super::{Inputs, Order, Settings, ShaderVariant, Technique};
+use super::{Inputs, Mode, Order, Settings, ShaderVariant, Technique};
 use crate::gpu::{
     Bindings, DepthUse, Error, Gpu, RasterDesc, RasterPipeline, Resource, TargetClass, Tile,
     set_area_of,
@@ -32,6 +32,17 @@ pub enum DepthAccess {
     /// What a host has drawn, read from an image ([`Slicer::bind_behind`]): of projections, which are drawn into an
     /// image that has no depth attachment, and of slabs, which reach out of the slices that would be tested.
     Sampled,
+}
+
+impl DepthAccess {
+    /// Of slices behind what a host has drawn. Slabs, which reach out of the slices that would be tested, and projections
+    /// read the host's depth.
+    pub fn behind(settings: &Settings) -> Self {
+        match settings.mode != Mode::Composite || settings.preintegrated {
+            true => Self::Sampled,
+            false => Self::Tested,
+        }
+    }
 }
 
 /// The pipeline that draws the slices of one technique.

@@ -16,6 +16,50 @@ static sv_trace_desc trace_desc(void) {
 }
 static sv_status with_trace(sv_trace_desc desc) { return sv_trace(device, &desc, &made_handle, &diagnostic); }
 
+/* Particles of dx/dt = 1 + t: x = t + t^2 / 2 from where they are let go. */
+static double way(double from, double to) { return to - from + (to * to - from * from) / 2; }
+
+static void paths(void) {
+    static float numbers[2 * SIDE * SIDE * SIDE * 3];
+    static const double TIMES[] = {0, 2}, BACK[] = {2, 0}, FROM[] = {0.25, 2, 2};
+    for (int k = 0; k < SIDE * SIDE * SIDE; ++k) numbers[3 * k] = 1, numbers[3 * (SIDE * SIDE * SIDE + k)] = 3;
+    sv_trace_desc start = trace_desc();
+    start.velocities = numbers, start.velocity_count *= 2, start.times = TIMES, start.time_count = 2;
+    start.seeds = FROM, start.seed_count = 1, start.kind = SV_LINE_KIND_PATH, start.direction = SV_DIRECTION_FORWARD;
+#define with with_trace
+    WITH(sv_trace_desc, start, kind, 3, SV_E_ARGUMENT);
+    WITH(sv_trace_desc, start, time_count, 1, SV_E_ARGUMENT);
+    WITH(sv_trace_desc, start, time_count, UINT32_MAX, SV_E_ARGUMENT);
+    WITH(sv_trace_desc, start, times, NULL, SV_E_ARGUMENT);
+    WITH(sv_trace_desc, start, times, BACK, SV_E_ARGUMENT);
+    WITH(sv_trace_desc, start, start, 2.5, SV_E_ARGUMENT);
+    WITH(sv_trace_desc, start, seeds, NULL, SV_E_ARGUMENT);
+    sv_trace_desc still = trace_desc();
+    WITH(sv_trace_desc, still, kind, SV_LINE_KIND_STREAK, SV_E_ARGUMENT);
+    sv_trace_desc smoke = start;
+    smoke.kind = SV_LINE_KIND_STREAK, smoke.end = 1;
+    WITH(sv_trace_desc, smoke, end, NAN, SV_E_ARGUMENT);
+    WITH(sv_trace_desc, smoke, end, 2.5, SV_E_ARGUMENT);
+#undef with
+    for (int k = 0; k < 2; ++k) {
+        sv_lines found = 0;
+        double places[3 * 64], values[2 * 64];
+        uint64_t count = 64, breaks = 64;
+        GOOD(sv_trace(device, k ? &smoke : &start, &found, &diagnostic));
+        GOOD(sv_lines_positions(found, 0, places, &count, &diagnostic));
+        GOOD(sv_lines_values(found, 0, values, &count, &diagnostic));
+        GOOD(sv_lines_breaks(found, 0, NULL, &breaks, &diagnostic));
+        /* A path goes on to the face; the oldest particle of a streak comes first. */
+        int is_right = count > 3 && breaks == 0 && (k ? values[0] == 0 : places[3 * (count - 1)] > 3.99);
+        for (uint64_t i = 0; i < count; ++i) {
+            const double t = values[2 * i], wanted = 0.25 + (k ? way(t, 1) : way(0, t));
+            is_right &= fabs(places[3 * i] - wanted) < 1e-9 && places[3 * i + 1] == 2;
+        }
+        if (!is_right) failures += 1, fprintf(stderr, "FAILED: other particles\n");
+        GOOD(sv_lines_destroy(found, &diagnostic));
+    }
+}
+
 static void lines(void) {
     for (int k = 0; k < SIDE * SIDE * SIDE; ++k) velocities[3 * k] = 2.0f;
     const sv_trace_desc start = trace_desc();
@@ -162,5 +206,6 @@ static void shapes(void) {
 
 void abuse_geometry(void) {
     lines();
+    paths();
     shapes();
 }

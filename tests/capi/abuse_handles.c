@@ -156,6 +156,7 @@ static sv_status h_trace(uint64_t x) {
 static sv_status h_lines_count(uint64_t x) { return sv_lines_count(x, &left_over, &diagnostic); }
 static sv_status h_positions(uint64_t x) { return sv_lines_positions(x, 0, NULL, &left_over, &diagnostic); }
 static sv_status h_values(uint64_t x) { return sv_lines_values(x, 0, NULL, &left_over, &diagnostic); }
+static sv_status h_breaks(uint64_t x) { return sv_lines_breaks(x, 0, NULL, &left_over, &diagnostic); }
 static sv_status h_cause(uint64_t x) {
     uint32_t causes[2];
     return sv_lines_cause(x, 0, causes, &diagnostic);
@@ -234,6 +235,7 @@ static const struct {
     {"sv_lines_count", h_lines_count, LINES, 0},
     {"sv_lines_positions", h_positions, LINES, 0},
     {"sv_lines_values", h_values, LINES, 0},
+    {"sv_lines_breaks", h_breaks, LINES, 0},
     {"sv_lines_cause", h_cause, LINES, 0},
     {"sv_lines_destroy", h_lines_destroy, LINES, 0},
     {"sv_geometry_create", h_geometry_create, DEVICE, 0},

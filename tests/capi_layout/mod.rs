@@ -31,7 +31,7 @@ pub fn asserts() -> Vec<String> {
         sv_plan { struct_size, next, device_bytes, staging_bytes, bricks }
         sv_update_desc { struct_size, next, origin, extent, voxels, voxel_bytes }
         sv_pacing { struct_size, next, target_ms, tell, user }
-        sv_trace_desc { struct_size, next, dims, direction, velocities, velocity_count, world_from_voxel, seeds, seed_count, spacing, most_lines, most_vertices, length, duration, tolerance }
+        sv_trace_desc { struct_size, next, dims, direction, velocities, velocity_count, world_from_voxel, seeds, seed_count, spacing, most_lines, most_vertices, length, duration, tolerance, kind, time_count, times, start, end }
         sv_round_cone { first, second, first_radius, second_radius, first_color, second_color }
         sv_triangle { corners, colors, reserved }
         sv_geometry_desc { struct_size, next, target, color_space, frames_in_flight, cones, cone_count, triangles, triangle_count }
@@ -73,6 +73,10 @@ pub fn asserts() -> Vec<String> {
         (
             "SV_DIRECTION_BACKWARD",
             sv_direction::SV_DIRECTION_BACKWARD as i32,
+        ),
+        (
+            "SV_LINE_KIND_STREAK",
+            sv_line_kind::SV_LINE_KIND_STREAK as i32,
         ),
         ("SV_ABI_VERSION", sv_version::SV_ABI_VERSION as i32),
     ] {

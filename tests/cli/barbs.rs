@@ -163,9 +163,8 @@ fn barbs_that_cannot_be_are_refused_by_name() {
         ("--barb-color red", "--barbs"),
         ("--wind ua,va", "--wind names a wind that nothing draws"),
         ("--barbs --wind ua,nothing", "nothing"),
-        ("--barbs --technique slices-3d", "--technique raycast"),
+        ("--barbs --technique shear-warp", "not for shear-warp"),
         ("--barbs --section axial", "--barbs with --section"),
-        ("--barbs --device reference", "--device reference"),
     ] {
         let ran = folder.run(&format!(
             "render {} --variable ua {words} -o a.png --size 20x20",

@@ -290,7 +290,7 @@ fn every_command_of_the_page_of_annotation_runs() {
 #[test]
 fn every_command_of_the_page_of_weather_runs() {
     let (folder, _, lines) = run_page("docs/weather.md");
-    assert_eq!(lines, 10);
+    assert_eq!(lines, 11);
     let pictures = [
         "vapor.png",
         "comets.png",

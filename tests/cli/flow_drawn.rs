@@ -115,6 +115,36 @@ fn a_volume_lies_before_and_behind_its_lines() {
     }
 }
 
+/// How much volume lies before them is for `tests/exact/geometry.rs` to say.
+#[test]
+fn other_techniques_and_the_references_show_the_same_lines() {
+    let folder = Folder::new();
+    let words = format!(
+        "{VIEW} {SOUTH} --look plain --variable vapor --window 0,9 --flow stream --flow-seeds random:9,4 --flow-color 1:0:0 \
+         --flow-width 3"
+    );
+    let alone = picture(&folder, &format!("{words} --hide-volume"));
+    let rays = picture(&folder, &words);
+    let on_lines = (0..alone.len()).filter(|&i| alone[i][3] == 1.0);
+    let on_lines: Vec<_> = on_lines.collect();
+    assert!(on_lines.len() > 100, "{}", on_lines.len());
+    let found = picture(&folder, &format!("{words} --device reference"));
+    for &i in &on_lines {
+        let off = (0..4).map(|c| (found[i][c] - rays[i][c]).abs());
+        let off = off.fold(0.0, f32::max);
+        assert!(off < 1e-4, "pixel {i}: {off}");
+    }
+    for technique in ["slices-3d", "slices-2d", "splat"] {
+        let found = picture(&folder, &format!("{words} --technique {technique}"));
+        assert!(
+            on_lines.iter().all(|&i| found[i][3] > 1.0 - 1e-6),
+            "{technique}"
+        );
+        let mixed = on_lines.iter().filter(|&&i| found[i] != alone[i]).count();
+        assert!(mixed > 50, "{technique}: {mixed}");
+    }
+}
+
 #[test]
 fn a_scene_keeps_lines_and_a_film_draws_them_at_each_time() {
     let folder = Folder::new();
@@ -172,9 +202,9 @@ fn a_scene_keeps_lines_and_a_film_draws_them_at_each_time() {
 fn what_lines_cannot_be_drawn_with_is_refused_by_name() {
     let folder = Folder::new();
     for (words, wanted) in [
-        ("--technique slices-3d", "--technique raycast"),
+        ("--technique shear-warp", "slices-3d"),
+        ("--technique pathtrace", "not for pathtrace"),
         ("--aa 4 --aa-uneven", "--aa-uneven"),
-        ("--device reference", "--device reference"),
         ("--hide-volume --mode mip", "--hide-volume"),
         ("--flow-width 0.5", "1.2 to 1000"),
         ("--flow-colormap jet", "a colour map"),

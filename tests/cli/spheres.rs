@@ -78,17 +78,13 @@ fn what_spheres_do_not_go_with_is_refused_by_name() {
         ("p.csv --points-as spheres --mode mip", "--mode mip"),
         (
             "p.csv --points-as spheres --technique splat",
-            "--technique raycast",
+            "and --technique splat",
         ),
         (
             "p.csv --points-as spheres --labels p.csv",
             "scattered points",
         ),
         ("p.csv --points-as spheres --section axial", "--section"),
-        (
-            "p.csv --points-as spheres --device reference",
-            "--device reference",
-        ),
         ("p.csv --points-as spheres --sphere-size 0", "--sphere-size"),
         ("p.csv --points-as spheres --jitter", "and --jitter"),
         (

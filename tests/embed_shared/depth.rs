@@ -5,11 +5,12 @@ use super::image::allocate;
 use ash::vk;
 use std::ptr::copy_nonoverlapping;
 
-/// One number a pixel, `D32_SFLOAT`.
+/// One number a pixel.
 pub struct DepthImage<'h> {
     pub raw: vk::Image,
     pub view: vk::ImageView,
     pub extent: [u32; 2],
+    format: vk::Format,
     memory: vk::DeviceMemory,
     buffer: vk::Buffer,
     buffer_memory: vk::DeviceMemory,
@@ -60,17 +61,40 @@ pub const ATTACHED: State = (
 );
 
 impl<'h> DepthImage<'h> {
-    /// Of so many numbers, and brought to `state`.
+    /// Of so many numbers as `D32_SFLOAT`, and brought to `state`.
     pub fn new(host: &'h Host, extent: [u32; 2], depths: &[f32], state: State) -> Self {
+        Self::of_format(host, vk::Format::D32_SFLOAT, extent, depths, state)
+    }
+
+    /// The same in 16 or 24 bits.
+    pub fn of_format(
+        host: &'h Host,
+        format: vk::Format,
+        extent: [u32; 2],
+        depths: &[f32],
+        state: State,
+    ) -> Self {
+        assert_eq!(depths.len(), (extent[0] * extent[1]) as usize);
+        let made = Self::of_samples(host, format, extent, vk::SampleCountFlags::TYPE_1);
+        made.fill(depths, state);
+        made
+    }
+
+    /// With several samples, or before it is filled, it holds nothing.
+    pub fn of_samples(
+        host: &'h Host,
+        format: vk::Format,
+        extent: [u32; 2],
+        samples: vk::SampleCountFlags,
+    ) -> Self {
         let [width, height] = extent;
-        assert_eq!(depths.len(), (width * height) as usize);
         let usage = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT
             | vk::ImageUsageFlags::SAMPLED
             | vk::ImageUsageFlags::TRANSFER_SRC
             | vk::ImageUsageFlags::TRANSFER_DST;
         let info = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)
-            .format(vk::Format::D32_SFLOAT)
+            .format(format)
             .extent(vk::Extent3D {
                 width,
                 height,
@@ -78,16 +102,16 @@ impl<'h> DepthImage<'h> {
             })
             .mip_levels(1)
             .array_layers(1)
-            .samples(vk::SampleCountFlags::TYPE_1)
+            .samples(samples)
             .usage(usage);
-        let bytes = std::mem::size_of_val(depths) as u64;
+        let bytes = 4 * u64::from(width) * u64::from(height);
         let buffer_info = vk::BufferCreateInfo::default()
             .size(bytes)
             .usage(vk::BufferUsageFlags::TRANSFER_DST | vk::BufferUsageFlags::TRANSFER_SRC);
         let reached =
             vk::MemoryPropertyFlags::HOST_VISIBLE | vk::MemoryPropertyFlags::HOST_COHERENT;
         // SAFETY: plain Vulkan; all of it is destroyed by `drop`, before the device.
-        let made = unsafe {
+        unsafe {
             let device = &host.device;
             let raw = device.create_image(&info, None).unwrap();
             let wanted = device.get_image_memory_requirements(raw);
@@ -96,27 +120,50 @@ impl<'h> DepthImage<'h> {
             let info = vk::ImageViewCreateInfo::default()
                 .image(raw)
                 .view_type(vk::ImageViewType::TYPE_2D)
-                .format(vk::Format::D32_SFLOAT)
+                .format(format)
                 .subresource_range(WHOLE);
             let view = device.create_image_view(&info, None).unwrap();
             let buffer = device.create_buffer(&buffer_info, None).unwrap();
             let wanted = device.get_buffer_memory_requirements(buffer);
             let buffer_memory = allocate(host, wanted, reached);
             device.bind_buffer_memory(buffer, buffer_memory, 0).unwrap();
-            let flags = vk::MemoryMapFlags::empty();
-            let mapped = device.map_memory(buffer_memory, 0, bytes, flags).unwrap();
-            copy_nonoverlapping(depths.as_ptr().cast(), mapped.cast::<u8>(), bytes as usize);
-            device.unmap_memory(buffer_memory);
             Self {
                 raw,
                 view,
                 extent,
+                format,
                 memory,
                 buffer,
                 buffer_memory,
                 host,
             }
+        }
+    }
+
+    fn fill(&self, depths: &[f32], state: State) {
+        let (made, host, format) = (self, self.host, self.format);
+        let texels: Vec<u8> = match format {
+            vk::Format::D16_UNORM => depths
+                .iter()
+                .flat_map(|depth| ((depth * 65535.0).round() as u16).to_ne_bytes())
+                .collect(),
+            vk::Format::X8_D24_UNORM_PACK32 => depths
+                .iter()
+                .flat_map(|depth| ((depth * 16_777_215.0).round() as u32).to_ne_bytes())
+                .collect(),
+            _ => depths
+                .iter()
+                .flat_map(|depth| depth.to_ne_bytes())
+                .collect(),
         };
+        let flags = vk::MemoryMapFlags::empty();
+        // SAFETY: the memory holds that many bytes, and nothing reads them yet.
+        unsafe {
+            let device = &host.device;
+            let mapped = device.map_memory(self.buffer_memory, 0, vk::WHOLE_SIZE, flags);
+            copy_nonoverlapping(texels.as_ptr(), mapped.unwrap().cast::<u8>(), texels.len());
+            device.unmap_memory(self.buffer_memory);
+        }
         // SAFETY: outside rendering; the image lives until `run` has waited.
         host.run(|cmd| unsafe {
             let nothing = (
@@ -130,7 +177,6 @@ impl<'h> DepthImage<'h> {
             device.cmd_copy_buffer_to_image(cmd, made.buffer, made.raw, COPIED_TO.2, &copy);
             made.barrier(cmd, COPIED_TO, state);
         });
-        made
     }
 
     fn copied(&self) -> vk::BufferImageCopy {
@@ -170,8 +216,9 @@ impl<'h> DepthImage<'h> {
         }
     }
 
-    /// The numbers that are there after a rendering, the image being [`ATTACHED`].
+    /// The numbers that are there after a rendering, the image being [`ATTACHED`], of `D32_SFLOAT`.
     pub fn numbers(&self) -> Vec<f32> {
+        assert_eq!(self.format, vk::Format::D32_SFLOAT);
         let count = (self.extent[0] * self.extent[1]) as usize;
         let mut numbers = vec![0f32; count];
         // SAFETY: the image lives until `run` has waited; the memory holds that many bytes.

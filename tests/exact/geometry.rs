@@ -1,16 +1,25 @@
 //! Opaque geometry in a picture: rays end at it, and it is seen through what lies before it.
 
-use crate::shared::{device, volume_of};
+use crate::shared::{compare, device, ramps, volume_of, waves};
 use glam::{DAffine3, DVec3, dvec3};
 use std::sync::Arc;
 use stratavox::camera::{Camera, Projection};
 use stratavox::geometry::{Geometry, RoundCones, Vertex};
-use stratavox::offscreen::{Renderer, check_geometry};
-use stratavox::picture::ColorSpace;
+use stratavox::offscreen::{Renderer, check_geometry, reference};
+use stratavox::picture::{ColorSpace, LayerKind};
 use stratavox::scene::{Beside, Scene};
-use stratavox::technique::{ClipPlane, Mode, Settings, Technique};
+use stratavox::technique::splat::Splat;
+use stratavox::technique::{ClipPlane, Level, Mode, Settings, Shading, Shadows, Technique};
 use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
 use stratavox::volume::Volume;
+
+/// What ends at geometry.
+const ENDING: [Technique; 4] = [
+    Technique::Raycast,
+    Technique::Slices3d,
+    Technique::Slices2d,
+    Technique::Splat,
+];
 
 const SIDE: f64 = 8.0;
 const EXTINCTION: f64 = 0.2;
@@ -86,6 +95,154 @@ fn clip_planes_cut_geometry_as_they_cut_the_fog() {
     let normal = dvec3(0.4, 0.2, -2.0);
     let offset = normal.dot(dvec3(2.0, 4.0, 3.5));
     assert_fog_before_geometry(&[ClipPlane { normal, offset }], 12);
+}
+
+/// Of each slice a pixel has all or nothing: at the tube the fog is as deep as it is to half a slice, at its face too. Slabs
+/// are cut where rays are, to the last part of a step.
+#[test]
+fn slices_before_geometry_are_as_many_as_there_is_room_for() {
+    let (volume, function) = fog();
+    let geometry = cones();
+    let fog_color = function.color[0].srgb.map(stratavox::color::decode_srgb);
+    let mut renderer = Renderer::new(device(), &volume).expect("a renderer");
+    renderer.set_geometry(Some(Arc::clone(&geometry)));
+    for (technique, preintegrated) in [
+        (Technique::Slices3d, false),
+        (Technique::Slices2d, false),
+        (Technique::Slices3d, true),
+    ] {
+        for camera in cameras() {
+            let settings = Settings {
+                technique,
+                preintegrated,
+                color_space: ColorSpace::Linear,
+                samples_per_voxel: 2.0,
+                ..Settings::default()
+            };
+            let scene = Scene {
+                volume: &volume,
+                transfer: Some(&function),
+                beside: Beside::Nothing,
+                camera: &camera,
+                extent_pixels: EXTENT,
+                settings: &settings,
+            };
+            let found = renderer.render(&scene, &[]).expect("a picture").picture;
+            let seen = geometry.seen(&camera, EXTENT, [0.0; 2]);
+            let rays = camera.rays(EXTENT);
+            let forward = camera.frame().forward;
+            let mut hidden = 0;
+            for (i, found) in found.pixels.iter().enumerate() {
+                let [x, y] = [i % EXTENT[0] as usize, i / EXTENT[0] as usize];
+                let (origin, direction) = rays.at(x as f64 + 0.5, y as f64 + 0.5);
+                let Some([enter, leave]) = interval(origin, direction, &[]) else {
+                    continue;
+                };
+                // The stack is across z here, of one slice a voxel.
+                let step = match technique {
+                    Technique::Slices3d => 0.5 / direction.dot(forward),
+                    _ => 1.0 / direction.z.abs(),
+                };
+                let length = (leave.min(seen.distances[i]) - enter).max(0.0);
+                hidden += usize::from(seen.distances[i] < leave && length > 0.5);
+                let off = match preintegrated {
+                    true => 1.0 / 1024.0,
+                    false => EXTINCTION * step + 1.0 / 1024.0,
+                };
+                let alpha = 1.0 - (-EXTINCTION * length).exp();
+                for c in 0..4 {
+                    let own = f64::from(seen.pixels[i][c]);
+                    let fog = [fog_color[0], fog_color[1], fog_color[2], 1.0][c];
+                    let wanted = alpha * fog + (1.0 - alpha) * own;
+                    let error = (f64::from(found[c]) - wanted).abs();
+                    // A slice more or less in place of what lies behind it.
+                    let change = (fog - own).abs().max(1.0 / 16.0);
+                    assert!(
+                        error <= off * change,
+                        "{technique:?} {preintegrated}: pixel {i}, channel {c}: {error:e}"
+                    );
+                }
+            }
+            assert!(hidden > 60, "{hidden} rays end inside of the fog");
+        }
+    }
+}
+
+#[test]
+fn every_technique_ends_at_geometry_where_its_reference_does() {
+    let affine = DAffine3::IDENTITY;
+    let volume = volume_of([SIDE as u32; 3], affine, waves);
+    let function = ramps();
+    let geometry = cones();
+    let mut renderer = Renderer::new(device(), &volume).expect("a renderer");
+    renderer.set_geometry(Some(Arc::clone(&geometry)));
+    for camera in cameras() {
+        for technique in ENDING {
+            for (mode, preintegrated) in [
+                (Mode::Composite, false),
+                (Mode::Composite, true),
+                (Mode::Iso, false),
+                (Mode::Mida, false),
+                (Mode::Mip, false),
+            ] {
+                let is_sliced = technique != Technique::Raycast;
+                let is_splat = technique == Technique::Splat;
+                if is_sliced && !matches!(mode, Mode::Composite | Mode::Mip)
+                    || is_splat && preintegrated
+                {
+                    continue;
+                }
+                let levels = vec![Level {
+                    value: 0.5,
+                    srgb: [1.0, 0.8, 0.6],
+                    opacity: 0.6,
+                }];
+                let mut settings = Settings {
+                    technique,
+                    mode,
+                    preintegrated,
+                    color_space: ColorSpace::Linear,
+                    conformance: true,
+                    skip: false,
+                    ..Settings::default()
+                };
+                settings.per_mode.levels = levels;
+                let scene = Scene {
+                    volume: &volume,
+                    transfer: Some(&function),
+                    beside: Beside::Nothing,
+                    camera: &camera,
+                    extent_pixels: EXTENT,
+                    settings: &settings,
+                };
+                let kinds = [LayerKind::Samples];
+                let found = renderer.render(&scene, &kinds).expect("a picture").picture;
+                let with = Some(&*geometry);
+                let double = reference::render_with::<f64>(&scene, with).expect("a picture");
+                let single = reference::render_with::<f32>(&scene, with).expect("a picture");
+                let all = [&double, &single, &found];
+                let what = format!("{technique:?} {mode:?} {preintegrated}");
+                let pixels = all.map(|picture| picture.pixels.as_flattened());
+                compare(&what, 4 * EXTENT[0], pixels, 1.0);
+                let samples = all.map(|picture| {
+                    let layers = picture.layers.iter();
+                    let mut samples = layers.filter(|layer| layer.kind == LayerKind::Samples);
+                    &samples.next().expect("counted").values[..]
+                });
+                compare(&format!("samples of {what}"), EXTENT[0], samples, 16.0);
+                // Splats reach some two voxels beyond the sheets that they are of, a half of this volume.
+                if mode != Mode::Mip && !is_splat {
+                    let whole = reference::render::<f32>(&scene).expect("a picture");
+                    let samples = &samples[1];
+                    let layers = whole.layers.iter();
+                    let mut of_whole = layers.filter(|layer| layer.kind == LayerKind::Samples);
+                    let of_whole = &of_whole.next().expect("counted").values;
+                    let fewer = samples.iter().zip(of_whole).filter(|(a, b)| a < b).count();
+                    assert!(fewer > 60, "{what}: {fewer} rays end");
+                }
+            }
+        }
+    }
 }
 
 fn assert_fog_before_geometry(planes: &[ClipPlane], least_hidden: usize) {
@@ -197,21 +354,105 @@ fn over_a_projection_geometry_lies_whole() {
 }
 
 #[test]
+fn the_layer_of_lines_has_the_number_of_the_nearest() {
+    let (volume, function) = fog();
+    let vertex = |x: f64, y: f64, z: f64| Vertex {
+        place: dvec3(x, y, z),
+        radius: 0.5,
+        color: [1.0; 3],
+    };
+    let mut cones = RoundCones::default();
+    // Across each other, the second before the first; a third without a number lies beside them.
+    cones.add_line_of(1, [vertex(0.0, 4.0, 2.0), vertex(8.0, 4.0, 2.0)]);
+    cones.add_line_of(7, [vertex(4.0, 0.0, 5.0), vertex(4.0, 8.0, 5.0)]);
+    cones.add_line([vertex(0.0, 7.0, 2.0), vertex(2.0, 7.0, 2.0)]);
+    let geometry = Arc::new(Geometry::from(cones));
+    let camera = Camera {
+        eye: dvec3(4.0, 4.0, 20.0),
+        ..cameras()[0]
+    };
+    let is_on = |x: f64, y: f64| match () {
+        () if (x - 4.0).abs() < 0.5 && (-0.5..8.5).contains(&y) => 7.0,
+        () if (y - 4.0).abs() < 0.5 && (-0.5..8.5).contains(&x) => 1.0,
+        () => 0.0,
+    };
+    let mut renderer = Renderer::new(device(), &volume).expect("a renderer");
+    for technique in [Technique::Raycast, Technique::Slices3d] {
+        for mode in [Mode::Composite, Mode::Mip] {
+            let settings = Settings {
+                technique,
+                mode,
+                ..Settings::default()
+            };
+            let scene = Scene {
+                volume: &volume,
+                transfer: Some(&function),
+                beside: Beside::Nothing,
+                camera: &camera,
+                extent_pixels: EXTENT,
+                settings: &settings,
+            };
+            let kinds = [LayerKind::Line, LayerKind::Samples];
+            renderer.set_geometry(None);
+            let said = renderer.render(&scene, &kinds).expect_err("no lines");
+            assert!(said.to_string().contains("`line`"), "{said}");
+            renderer.set_geometry(Some(Arc::clone(&geometry)));
+            let found = renderer.render(&scene, &kinds).expect("a picture").picture;
+            let on_cpu = reference::render_with::<f32>(&scene, Some(&geometry));
+            let on_cpu = on_cpu.expect("a picture").layers;
+            let on_cpu = on_cpu.iter().find(|layer| layer.kind == LayerKind::Line);
+            assert_eq!(on_cpu, found.layers.first());
+            assert_eq!(found.layers[1].kind, LayerKind::Samples);
+            let rays = camera.rays(EXTENT);
+            let mut told = 0;
+            for (i, &line) in found.layers[0].values.iter().enumerate() {
+                let [x, y] = [i % EXTENT[0] as usize, i / EXTENT[0] as usize];
+                let (origin, _) = rays.at(x as f64 + 0.5, y as f64 + 0.5);
+                // Round ends are in their corners alone.
+                let is_end = |n: f64| !(0.0..8.0).contains(&n);
+                if is_end(origin.x) || is_end(origin.y) {
+                    continue;
+                }
+                assert_eq!(line, is_on(origin.x, origin.y), "pixel {i}");
+                told += usize::from(line > 0.0);
+            }
+            assert!(told > 100, "{told}");
+        }
+    }
+}
+
+#[test]
 fn what_cannot_show_geometry_says_so() {
-    for (technique, uneven_rays) in [
-        (Technique::Slices3d, false),
-        (Technique::ShearWarp, false),
-        (Technique::Splat, false),
-        (Technique::Pathtrace, false),
-        (Technique::Raycast, true),
+    let of = |technique| Settings {
+        technique,
+        ..Settings::default()
+    };
+    let of_points = Settings {
+        splat: Splat::of_points(),
+        ..of(Technique::Splat)
+    };
+    let half_angle = Settings {
+        shading: Some(Shading {
+            shadows: Shadows::HalfAngle,
+            ..Shading::default()
+        }),
+        ..of(Technique::Slices3d)
+    };
+    let uneven = Settings {
+        uneven_rays: true,
+        ..Settings::default()
+    };
+    for settings in [
+        of(Technique::ShearWarp),
+        of(Technique::Pathtrace),
+        of_points,
+        half_angle,
+        uneven,
     ] {
-        let settings = Settings {
-            technique,
-            uneven_rays,
-            ..Settings::default()
-        };
         let said = check_geometry(&settings).expect_err("refused").to_string();
         assert!(said.contains("geometry"), "{said}");
     }
-    assert!(check_geometry(&Settings::default()).is_ok());
+    for technique in ENDING {
+        assert!(check_geometry(&of(technique)).is_ok(), "{technique:?}");
+    }
 }

@@ -39,6 +39,8 @@ fn layers_of(shot: &PictureCase) -> Vec<LayerKind> {
         LayerKind::Label => false,
         // Marks over a picture are the command line's.
         LayerKind::Annotation => false,
+        // It is of what is drawn beside the volume: tests/exact/geometry.rs.
+        LayerKind::Line => false,
         // Of random paths.
         LayerKind::Noise => false,
         LayerKind::Samples => true,

@@ -4,12 +4,16 @@
 use crate::cells::{DENOISE, FEATURES, FILTERS, Feature, MODES, Matter, Seen, settings};
 use crate::page;
 use crate::shared::{Worst, compare, device, device_with};
+use glam::dvec3;
 use std::error::Error;
+use std::sync::Arc;
+use stratavox::geometry::{Geometry, RoundCones, Vertex};
 use stratavox::gpu::Caps;
 use stratavox::offscreen::{self, Renderer, reference};
 use stratavox::picture::Picture;
 use stratavox::scene::Scene;
 use stratavox::technique::{Filter, GradientStorage, Technique};
+use stratavox::volume::Volume;
 
 #[test]
 fn the_page_says_what_the_checks_of_the_code_say() {
@@ -67,6 +71,7 @@ fn assert_cells(technique: Technique) {
             _ => device(),
         };
         let mut renderer = Renderer::several(device, scene.volumes()).expect("a renderer");
+        renderer.set_geometry(geometry(feature.seen, scene.volume).map(Arc::new));
         for (mode, _) in MODES {
             for (filter, _) in FILTERS {
                 nth += 1;
@@ -90,6 +95,18 @@ fn assert_cells(technique: Technique) {
         100
     };
     assert!(drawn > most, "{technique:?}: only {drawn} cells are drawn");
+}
+
+/// What is drawn in the volume: a tube.
+fn geometry(seen: Seen, volume: &Volume) -> Option<Geometry> {
+    let ends = [(dvec3(-1.0, 7.0, 3.0), 1.5), (dvec3(9.0, 4.0, 6.0), 0.8)];
+    let mut cones = RoundCones::default();
+    cones.add_line(ends.map(|(voxel, radius)| Vertex {
+        place: volume.world_from_voxel.transform_point3(voxel),
+        radius,
+        color: [0.9, 0.6, 0.1],
+    }));
+    (seen == Seen::Tube).then(|| cones.into())
 }
 
 /// Of five filters that are wider than linear one is drawn, by turns: rows have seven of all filters, so that it is another
@@ -119,11 +136,12 @@ fn is_drawn(renderer: &mut Renderer, [scene, of_reference]: [Scene; 2], feature:
         assert!(reason.starts_with(start), "{what}: {reason}");
         return false;
     }
+    let geometry = geometry(feature.seen, scene.volume);
     let references = [
-        reference::render::<f64>(&of_reference),
-        reference::render::<f32>(&of_reference),
+        reference::render_with::<f64>(&of_reference, geometry.as_ref()),
+        reference::render_with::<f32>(&of_reference, geometry.as_ref()),
     ];
-    if let Err(refused) = scene.check() {
+    if let Err(refused) = Matter::check(&scene, feature.seen) {
         let reason = refused.to_string();
         let of_device = found.err().map(|error| text_of(&error));
         assert_eq!(of_device.as_ref(), Some(&reason), "{what}: device");

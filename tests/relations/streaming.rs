@@ -6,6 +6,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use stratavox::camera::{Camera, Projection};
+use stratavox::geometry::{Geometry, RoundCones, Vertex};
 use stratavox::offscreen::{Renderer, Stream, StreamOptions};
 use stratavox::picture::{LayerKind, Picture};
 use stratavox::scene::Scene;
@@ -116,6 +117,10 @@ fn settings() -> Vec<Settings> {
 }
 
 fn assert_same(source: Numbers, settings: &[Settings]) {
+    assert_same_beside(source, settings, None);
+}
+
+fn assert_same_beside(source: Numbers, settings: &[Settings], geometry: Option<Arc<Geometry>>) {
     let source = Arc::new(source);
     let volume = source.in_memory();
     let stream = open(&source, SMALL);
@@ -124,6 +129,9 @@ fn assert_same(source: Numbers, settings: &[Settings]) {
     assert!(stream.outline().is_outline());
     let mut whole = Renderer::new(device(), &volume).expect("a renderer");
     let mut streamed = Renderer::streamed(device(), &stream).expect("a renderer");
+    for renderer in [&mut whole, &mut streamed] {
+        renderer.set_geometry(geometry.clone());
+    }
     for projection in projections(&volume.grid()) {
         let camera = oblique_camera(&volume.grid(), projection);
         for settings in settings {
@@ -155,6 +163,21 @@ fn assert_same(source: Numbers, settings: &[Settings]) {
 #[test]
 fn a_streamed_picture_is_bit_identical() {
     assert_same(Numbers::of([25, 21, 18], None, waves), &settings());
+}
+
+#[test]
+fn rays_through_every_brick_end_at_geometry() {
+    let affine = crate::shared::sheared_affine();
+    let vertex = |x: f64, radius: f64| Vertex {
+        place: affine.transform_point3(glam::dvec3(x, 10.0, 9.0)),
+        radius: radius * affine.matrix3.x_axis.length(),
+        color: [1.0, 0.5, 0.0],
+    };
+    let mut cones = RoundCones::default();
+    cones.add_line([vertex(-2.0, 3.0), vertex(27.0, 1.5)]);
+    let some = [0, 3, 9, 15].map(|nth| settings()[nth].clone());
+    let geometry = Some(Arc::new(cones.into()));
+    assert_same_beside(Numbers::of([25, 21, 18], None, waves), &some, geometry);
 }
 
 #[test]

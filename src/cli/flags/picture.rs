@@ -167,6 +167,8 @@ pub enum LayerWord {
     Position,
     /// Unit normal at the depth, in the world towards lower values, three numbers a pixel
     Normal,
+    /// The number of the line of --flow that is seen, counted from 1 as seeds are; 0 none
+    Line,
     /// The standard error of luminance of --technique pathtrace
     Noise,
 }
@@ -181,6 +183,7 @@ impl LayerWord {
             Self::Position => LayerKind::Position,
             Self::Normal => LayerKind::Normal,
             Self::Label => LayerKind::Label,
+            Self::Line => LayerKind::Line,
             Self::Noise => LayerKind::Noise,
         }
     }

@@ -59,6 +59,8 @@ pub(super) struct LineSet {
     pub(super) shares: Option<Vec<f64>>,
     /// The same of each place of each line.
     pub(super) tapers: Option<Vec<Vec<f64>>>,
+    /// The number of each line, where they have one.
+    pub(super) numbers: Option<Vec<u32>>,
     pub(super) has_heads: bool,
     /// Of the map, in a section: half of its world thickness.
     pub(super) on_section: Option<f64>,
@@ -97,6 +99,7 @@ impl DrawnLines {
             width_pixels: pixels.unwrap_or(SPHERE_PIXELS),
             shares: Some(kept().map(|(_, value)| share(value)).collect()),
             tapers: None,
+            numbers: None,
             has_heads: false,
             on_section: None,
             is_lifted: false,
@@ -192,6 +195,7 @@ impl DrawnLines {
                 width_pixels: line.width,
                 shares: None,
                 tapers: None,
+                numbers: None,
                 has_heads: false,
                 on_section,
                 is_lifted: self.ground.is_some(),
@@ -279,7 +283,12 @@ impl DrawnLines {
                     seconds: vertex.time,
                 });
                 let passed = passed.collect();
-                ways.push(Way { passed, ends });
+                let number = line.seed as u32 + 1;
+                ways.push(Way {
+                    passed,
+                    ends,
+                    number,
+                });
             }
         }
         if word == FlowWord::Stream {
@@ -336,8 +345,12 @@ impl DrawnLines {
             (StyleWord::Comets, FlowWord::Path, None) => Tail::Comet(TAIL * ways.span()),
             (StyleWord::Comets, FlowWord::Stream, None) => Tail::WholeComet,
         };
-        let drawn = ways.ways.iter().filter_map(|way| way.drawn(now, tail));
-        let (lines, tapers): (Vec<_>, Vec<_>) = drawn.unzip();
+        let drawn = ways.ways.iter().filter_map(|way| {
+            let (line, taper) = way.drawn(now, tail)?;
+            Some((line, (taper, way.number)))
+        });
+        let (lines, others): (Vec<_>, Vec<_>) = drawn.unzip();
+        let (tapers, numbers) = others.into_iter().unzip();
         let is_comet = look == StyleWord::Comets;
         self.sets.push(LineSet {
             lines,
@@ -346,6 +359,7 @@ impl DrawnLines {
                 .unwrap_or(if is_comet { COMET_WIDTH } else { WIDTH }),
             shares: None,
             tapers: is_comet.then_some(tapers),
+            numbers: Some(numbers),
             has_heads: look == StyleWord::Arrows,
             on_section: None,
             is_lifted: false,

@@ -31,6 +31,8 @@ pub struct Way {
     pub passed: Vec<Passed>,
     /// Seconds at which the whole way begins and ends.
     pub ends: [f64; 2],
+    /// That of its seed, counted from 1.
+    pub number: u32,
 }
 
 /// The ways of particles through all times of a film.
@@ -144,6 +146,7 @@ mod tests {
         Way {
             passed: passed.collect(),
             ends: [2.0, 6.0],
+            number: 1,
         }
     }
 

@@ -44,19 +44,21 @@ impl DrawnLines {
                     radius,
                     color,
                 };
+                let number = set.numbers.as_ref().map_or(0, |numbers| numbers[i]);
                 let taper = set.tapers.as_ref().map(|tapers| &tapers[i]);
                 match (&line[..], set.shares.is_some(), taper) {
                     ([symbol], true, _) => cones.add_symbol(vertex(symbol)),
-                    (_, _, None) => cones.add_line(line.iter().map(vertex)),
+                    (_, _, None) => cones.add_line_of(number, line.iter().map(vertex)),
                     (_, _, Some(taper)) => {
-                        cones.add_line(line.iter().zip(taper).map(|(place, share)| Vertex {
+                        let tapered = line.iter().zip(taper).map(|(place, share)| Vertex {
                             radius: share * radius,
                             ..vertex(place)
-                        }));
+                        });
+                        cones.add_line_of(number, tapered);
                     }
                 }
                 if set.has_heads {
-                    add_heads(&mut cones, line, radius, APART_PIXELS * pixel);
+                    add_heads(&mut cones, (line, number), radius, APART_PIXELS * pixel);
                 }
             }
         }
@@ -87,7 +89,12 @@ fn pixel_at_target(camera: &Camera, extent_pixels: [u32; 2]) -> f64 {
 }
 
 /// Heads along a line; one in its middle where it is short.
-fn add_heads(cones: &mut RoundCones, line: &[(DVec3, [f32; 3])], radius: f64, apart: f64) {
+fn add_heads(
+    cones: &mut RoundCones,
+    (line, number): (&[(DVec3, [f32; 3])], u32),
+    radius: f64,
+    apart: f64,
+) {
     let chords = || line.windows(2).map(|pair| (pair[1].0 - pair[0].0).length());
     let length: f64 = chords().sum();
     if length < HEAD_LENGTH_RADII * radius {
@@ -108,7 +115,8 @@ fn add_heads(cones: &mut RoundCones, line: &[(DVec3, [f32; 3])], radius: f64, ap
                 color,
             };
             let tip = place + HEAD_LENGTH_RADII * radius * along;
-            cones.add_line([end(place, HEAD_RADII * radius), end(tip, 0.05 * radius)]);
+            let ends = [end(place, HEAD_RADII * radius), end(tip, 0.05 * radius)];
+            cones.add_line_of(number, ends);
             next += length / count;
         }
         done += chord;

@@ -3,10 +3,9 @@
 use super::preclassified;
 use crate::cli::Error;
 use crate::cli::flags::{ClassificationFlags, Component, Plan, SceneFlags};
-use crate::cli::renderer::REFERENCE;
 use crate::offscreen::check_geometry;
 use crate::shaders::MAX_CHANNELS;
-use crate::technique::{Mode, Settings};
+use crate::technique::{Mode, Settings, Technique};
 use crate::volume::Header;
 /// Which of the numbers of a voxel are drawn, and what a person should know of it.
 pub(super) fn plan(scene: &SceneFlags, header: &Header) -> Result<(Plan, Option<String>), Error> {
@@ -101,10 +100,19 @@ fn check_lines(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
     let word = scene.geometry_word().unwrap_or("--points-as spheres");
     let refused =
         |problem: &str, hint: &str| Err(Error::usage(format!("{word} {problem}"), hint.to_owned()));
+    if scene.points_are_spheres() && settings.technique != Technique::Raycast {
+        return refused(
+            &format!(
+                "and --technique {}: a technique is of the samples of a volume, and spheres have none",
+                settings.technique
+            ),
+            "leave out --technique",
+        );
+    }
     if let Err(problem) = check_geometry(settings) {
         return refused(
-            &format!("takes --technique raycast and no --aa-uneven: {problem}"),
-            "leave them out",
+            &format!("ends rays and slices, and these do not end: {problem}"),
+            "--technique raycast, slices-2d or slices-3d, without --shadows half-angle and --aa-uneven",
         );
     }
     let stands_elsewhere = [
@@ -124,12 +132,6 @@ fn check_lines(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
         return refused(
             "with --section: a section is of a volume, and spheres are symbols beside it",
             "leave out one of them",
-        );
-    }
-    if scene.device.iter().any(|device| device == REFERENCE) {
-        return refused(
-            "with --device reference: the CPU references draw volumes alone",
-            "leave out --device",
         );
     }
     if scene.flow_style.hide_volume && settings.mode != Mode::Composite {

@@ -27,7 +27,6 @@ pub fn is_wanted(
         () if scene.labels.labels.is_some() || has_beside(scene, settings.mode) => {
             Some("--with, --labels and what else is seen together with a volume")
         }
-        () if scene.has_lines() => Some("--flow, --map, --barbs and --ground"),
         () if scene.denoise.is_some() => Some("--denoise"),
         () if !settings.technique.streams() => {
             Some("--technique slices-3d, slices-2d, shear-warp, splat and pathtrace")

@@ -1,31 +1,19 @@
-//! Opaque geometry in a picture: what rays find in the volume before it, over its own colour.
-//!
-//! ```text
-//! rays end at the geometry      picture = volume + (1 - alpha) geometry
-//! modes that project            have no order along a ray: the geometry lies over the picture
-//! clip planes                   cut the geometry too, and their cuts through it are seen
-//! ```
-//!
-//! Its distances come to the device as the depth buffer of a host whose depth is the distance along the line of sight.
+//! Geometry in the pictures of a device: what is seen of it, and its depths in an image of the device.
 
 use super::Renderer;
-use crate::camera::{Camera, DepthConvention, HostDepth};
-use crate::color::encode_srgb;
+use crate::camera::{Camera, HostDepth};
 use crate::geometry::{Geometry, Seen};
 use crate::gpu::{
     self, Buffer, Gpu, Headless, Image, ImageDesc, ImageKind, Memory, Region, Use, buffer_to_image,
     image_barrier,
 };
-use crate::named::Named;
-use crate::offscreen::Error;
-use crate::picture::{ColorSpace, Picture};
-use crate::scene::{Scene, positions_in_pixel};
-use crate::technique::{self, ClipPlane, InPixel, Settings};
+use crate::offscreen::{Error, behind, check_geometry};
+use crate::picture::{Layer, Picture};
+use crate::scene::Scene;
+use crate::technique::{ClipPlane, DepthAccess, InPixel, Recording, Settings};
 use ash::vk;
+use glam::DVec3;
 use std::sync::Arc;
-
-/// A depth that is as good as infinite, and that f32 can multiply.
-const NOTHING: f32 = 1e30;
 
 /// Geometry, and what of it is seen through one place in each pixel.
 #[derive(Debug)]
@@ -37,14 +25,23 @@ pub(super) struct Behind {
     image: Option<DepthImage>,
 }
 
-/// From where, through which place of each pixel, and behind which planes.
-type SeenBy = (Camera, InPixel, Vec<ClipPlane>);
+/// From where, through which place of each pixel, behind which planes, and as which depths.
+type SeenBy = (Camera, InPixel, Vec<ClipPlane>, HostDepth);
 
 #[derive(Debug)]
 struct DepthImage {
     image: Image,
     staging: Buffer,
     is_filled: bool,
+}
+
+/// Where rays and slices end.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ends<'a> {
+    depth: HostDepth,
+    access: DepthAccess,
+    /// The depth of each pixel.
+    pub image: &'a Image,
 }
 
 impl Renderer<'_> {
@@ -57,7 +54,7 @@ impl Renderer<'_> {
         });
     }
 
-    /// What of the geometry is seen through this place in each pixel, ready for rays to end there.
+    /// What of the geometry is seen through this place in each pixel, ready for rays and slices to end there.
     pub(super) fn look_behind(&mut self, scene: &Scene, in_pixel: InPixel) -> Result<(), Error> {
         match &mut self.behind {
             Some(behind) => behind.look(&mut self.device, scene, in_pixel),
@@ -71,51 +68,35 @@ impl Renderer<'_> {
         scene: &Scene,
         picture: &mut Picture,
     ) -> Result<(), Error> {
-        let Some(behind) = &mut self.behind else {
+        let Some(behind) = &self.behind else {
             return Ok(());
         };
         if !scene.settings.mode.is_projection() {
             return Ok(());
         }
-        let share = 1.0 / scene.settings.rays_per_side.pow(2) as f32;
-        let mut over = vec![[0.0; 4]; picture.pixels.len()];
-        for in_pixel in positions_in_pixel(scene.settings) {
-            behind.look(&mut self.device, scene, in_pixel)?;
-            let mut own = vec![[0.0; 4]; over.len()];
-            behind.put(&mut own, scene.settings);
-            for (sum, own) in over.iter_mut().zip(own) {
-                *sum = std::array::from_fn(|c| sum[c] + share * own[c]);
-            }
-        }
-        for (pixel, over) in picture.pixels.iter_mut().zip(over) {
-            *pixel = std::array::from_fn(|c| over[c] + (1.0 - over[3]) * pixel[c]);
-        }
+        check_geometry(scene.settings)?;
+        let geometry = &behind.geometry;
+        behind::put_over(scene, picture, |at| behind::seen(geometry, scene, at));
         Ok(())
     }
-}
 
-/// Whether pictures of these settings can show geometry.
-///
-/// # Errors
-/// [`technique::Error::NotFor`].
-pub fn check_geometry(settings: &Settings) -> Result<(), technique::Error> {
-    let refuse = |found: &str| {
-        Err(technique::Error::NotFor {
-            wanted: "geometry in the picture",
-            of: "rays through the same places of all pixels",
-            found: found.to_owned(),
-        })
-    };
-    let technique = settings.technique;
-    match () {
-        () if !technique.has_depth() || technique.splats() => refuse(technique.name()),
-        () if settings.uneven_rays => refuse("rays at uneven places"),
-        () => Ok(()),
+    /// Which lines are seen.
+    pub(super) fn lines(&self, scene: &Scene) -> Result<Layer, Error> {
+        let behind = self.behind.as_ref().ok_or(Error::NoLines)?;
+        Ok(behind::lines(&behind.geometry, scene))
+    }
+
+    /// What hides samples of slices in such pictures.
+    pub(super) fn depth_access(&self, settings: &Settings) -> DepthAccess {
+        match self.behind.is_none() || settings.mode.is_projection() {
+            true => DepthAccess::None,
+            false => behind::access(settings),
+        }
     }
 }
 
 impl Behind {
-    /// Looks from the camera of the scene, and brings the depths to the device where rays are to end there.
+    /// Looks from the camera of the scene, and brings the depths to the device where something is to end there.
     pub fn look(
         &mut self,
         device: &mut Headless,
@@ -123,83 +104,59 @@ impl Behind {
         in_pixel: InPixel,
     ) -> Result<(), Error> {
         check_geometry(scene.settings)?;
+        if scene.settings.mode.is_projection() {
+            return Ok(());
+        }
         let (camera, extent) = (*scene.camera, scene.extent_pixels);
-        let from = (camera, in_pixel, scene.settings.clip_planes.clone());
+        let depth = behind::host_depth(scene);
+        let from = (camera, in_pixel, scene.settings.clip_planes.clone(), depth);
         let is_there = self.seen.as_ref().is_some_and(|(was, seen)| {
             *was == from && seen.pixels.len() == extent[0] as usize * extent[1] as usize
         });
         if is_there {
             return Ok(());
         }
-        let planes: Vec<_> = from.2.iter().map(ClipPlane::unit).collect();
-        let seen = self
-            .geometry
-            .seen_cut(&camera, extent, in_pixel.at, &planes);
-        if !scene.settings.mode.is_projection() {
-            let depths = depths(&camera, extent, in_pixel, &seen);
-            let is_other = |image: &DepthImage| image.image.extent()[..2] != extent;
-            if self.image.as_ref().is_none_or(is_other) {
-                self.image = Some(DepthImage::new(device.gpu(), extent)?);
-            }
-            self.image
-                .as_mut()
-                .expect("made above")
-                .fill(device, &depths)?;
+        let seen = behind::seen(&self.geometry, scene, in_pixel);
+        let depths = behind::depths(&depth, scene, in_pixel, &seen);
+        let is_other = |image: &DepthImage| image.image.extent()[..2] != extent;
+        if self.image.as_ref().is_none_or(is_other) {
+            self.image = Some(DepthImage::new(device.gpu(), extent)?);
         }
+        self.image
+            .as_mut()
+            .expect("made above")
+            .fill(device, &depths)?;
         self.seen = Some((from, seen));
         Ok(())
     }
 
     /// What a recording is told, and what it binds.
-    pub fn depth(&self, camera: &Camera) -> Option<(HostDepth, &Image)> {
+    pub fn ends(&self, settings: &Settings) -> Option<Ends<'_>> {
+        let ((.., depth), _) = self.seen.as_ref()?;
         let image = self.image.as_ref()?;
-        Some((line_of_sight(camera), &image.image))
+        (!settings.mode.is_projection()).then(|| Ends {
+            depth: *depth,
+            access: behind::access(settings),
+            image: &image.image,
+        })
     }
 
-    /// Puts what was seen last behind the pixels of a volume.
+    /// Puts what was seen last behind the pixels of a volume; over those of a projection it lies later.
     pub fn put(&self, pixels: &mut [[f32; 4]], settings: &Settings) {
-        let Some((_, seen)) = &self.seen else {
-            return;
-        };
-        for (pixel, own) in pixels.iter_mut().zip(&seen.pixels) {
-            if own[3] == 0.0 {
-                continue;
-            }
-            let own = match settings.color_space {
-                ColorSpace::Linear => *own,
-                ColorSpace::Display => {
-                    let [r, g, b, a] = *own;
-                    [encode_srgb(r), encode_srgb(g), encode_srgb(b), a]
-                }
-            };
-            let through = 1.0 - pixel[3];
-            *pixel = std::array::from_fn(|c| pixel[c] + through * own[c]);
+        if let (Some((_, seen)), false) = (&self.seen, settings.mode.is_projection()) {
+            behind::put(seen, pixels, settings.color_space);
         }
     }
 }
 
-/// Depths that are distances along the line of sight.
-fn line_of_sight(camera: &Camera) -> HostDepth {
-    let forward = camera.frame().forward;
-    HostDepth {
-        z: forward.extend(-forward.dot(camera.eye)),
-        w: glam::DVec4::W,
-        nearer: DepthConvention::Standard,
-    }
-}
-
-fn depths(camera: &Camera, extent: [u32; 2], in_pixel: InPixel, seen: &Seen) -> Vec<f32> {
-    let rays = camera.rays(extent);
-    let depth = line_of_sight(camera);
-    let of = |(i, &distance): (usize, &f64)| {
-        if !distance.is_finite() {
-            return NOTHING;
+impl Ends<'_> {
+    /// Puts what is recorded behind it. `center` is that of the grid.
+    pub fn tell(&self, recording: &mut Recording, center: DVec3) {
+        match self.access {
+            DepthAccess::Tested => recording.tested_in_copy(&self.depth, center),
+            DepthAccess::None | DepthAccess::Sampled => recording.behind(&self.depth, center),
         }
-        let [x, y] = [i % extent[0] as usize, i / extent[0] as usize].map(|n| n as f64 + 0.5);
-        let (origin, direction) = rays.at(x + in_pixel.at[0], y + in_pixel.at[1]);
-        depth.of(origin + distance * direction) as f32
-    };
-    seen.distances.iter().enumerate().map(of).collect()
+    }
 }
 
 impl DepthImage {

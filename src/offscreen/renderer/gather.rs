@@ -81,12 +81,12 @@ impl Renderer<'_> {
         let behind = self
             .behind
             .as_ref()
-            .and_then(|behind| behind.depth(scene.camera));
+            .and_then(|behind| behind.ends(scene.settings));
         for recording in &mut recordings {
             recording.skip(skip);
             scene.tell_paths(&mut recording.frame);
-            if let Some((depth, _)) = &behind {
-                recording.behind(depth, grid.center());
+            if let Some(ends) = &behind {
+                ends.tell(recording, grid.center());
             }
         }
         let points = match scene.beside {
@@ -152,7 +152,7 @@ impl Renderer<'_> {
                 targets.count.as_mut().expect("made above"),
             ),
         };
-        let behind = behind.map(|(_, image)| Resource::sampled(image));
+        let behind = behind.map(|ends| Resource::sampled(ends.image));
         let submission = Submission {
             device: &mut self.device,
             timer: self.timer.as_ref(),

@@ -8,7 +8,7 @@
 //! What is left out adds nothing: the picture is the same to the bit (`sampling.md` 5).
 
 use super::Renderer;
-use crate::gpu::{Gpu, Tile, Use};
+use crate::gpu::{Gpu, Resource, Tile, Use};
 use crate::offscreen::Error;
 use crate::offscreen::stream::{Cache, Eye, Place, Stream};
 use crate::offscreen::submission::Submission;
@@ -227,6 +227,8 @@ impl<'v> Renderer<'v> {
         let grid = scene.volume.grid();
         let view = scene.view(&grid, in_pixel);
         let transfer = self.transfer.get();
+        let behind = self.behind.as_ref();
+        let behind = behind.and_then(|behind| behind.ends(scene.settings));
         let (mut inputs, mut bricks) = (Vec::new(), Vec::new());
         for (nth, (&brick, &seen)) in chunk.iter().zip(tiles).enumerate() {
             let there = cache.get(brick).expect("bricks of a chunk stay");
@@ -234,6 +236,9 @@ impl<'v> Renderer<'v> {
             let mut recording = view.recording_of_brick(&there.volume, transfer, ends)?;
             let skip = there.skip(way);
             recording.skip(skip);
+            if let Some(behind) = behind {
+                behind.tell(&mut recording, grid.center());
+            }
             inputs.push(Inputs {
                 ring: &self.ring,
                 volume: &there.volume,
@@ -263,7 +268,8 @@ impl<'v> Renderer<'v> {
         };
         let gather = self.passes.as_ref().expect("prepared").picture();
         let canvas = &mut self.targets.as_mut().expect("prepared").canvas;
-        Ok(submission.gather(gather, canvas, (&inputs, &bricks), None, !is_first)?)
+        let behind = behind.map(|behind| Resource::sampled(behind.image));
+        Ok(submission.gather(gather, canvas, (&inputs, &bricks), behind, !is_first)?)
     }
 
     /// Marks the bricks that can add nothing any more: all of their rays have ended, or have met larger values.

@@ -11,7 +11,7 @@ use crate::technique::{Lattice, Mode};
 
 /// What the ray of a pixel projects.
 pub(crate) fn pixel<R: Real>(of: &impl Samples<R>, pixel: [R; 2]) -> Gathered<R> {
-    let (frame, settings) = (of.frame(), of.settings());
+    let (frame, settings) = (&of.frame_of(pixel), of.settings());
     let mode = settings.mode;
     let (found, samples) = if settings.per_mode.exact_maximum {
         project_exactly(frame, mode, pixel, |index| of.voxel(index))

@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 
 /// What the ray of a pixel gathers, in the modes that composite.
 pub(crate) fn pixel<R: Real>(of: &impl Samples<R>, pixel: [R; 2]) -> Gathered<R> {
-    let (frame, settings) = (of.frame(), of.settings());
+    let (frame, settings) = (&of.frame_of(pixel), of.settings());
     let (mode, lattice) = (settings.mode, settings.ray_lattice());
     let value_at = |p| of.value(p);
     let ray_direction = pixel_ray(frame, pixel).direction;

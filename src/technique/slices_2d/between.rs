@@ -10,7 +10,7 @@
 //! Multi-Stage Rasterization", Graphics Hardware 2000.
 
 use crate::lattice::Slab;
-use crate::ray::{Ray, domain_interval, pixel_ray, voxel_ray};
+use crate::ray::{Ray, domain_interval, pixel_ray, visible_interval, voxel_ray};
 use crate::real::Real;
 use crate::shaders::Frame;
 use crate::technique::View;
@@ -99,7 +99,7 @@ fn ray_of<R: Real>(frame: &Frame, pixel: [R; 2]) -> Option<(Ray<R>, [R; 2], R)> 
     let voxel = voxel_ray(frame, &world);
     let slope = voxel.direction[frame.slice_axis as usize];
     let is_crossing = slope.abs() >= R::from_f32(1e-20);
-    let interval = domain_interval(frame, &world, &voxel);
+    let interval = visible_interval(frame, domain_interval(frame, &world, &voxel), &world);
     is_crossing.then_some((voxel, interval, slope))
 }
 

@@ -1,7 +1,7 @@
 //! 2D texture slicing on the CPU: CPU reference of `shaders/slices_2d.wgsl` and of its cover's order.
 
 use super::between::{self, Level};
-use crate::ray::{domain_interval, pixel_ray, voxel_ray};
+use crate::ray::{domain_interval, pixel_ray, visible_interval, voxel_ray};
 use crate::real::Real;
 use crate::shaders::Frame;
 use crate::technique::Filter;
@@ -10,7 +10,7 @@ use crate::technique::reference::{Gathered, Samples, SlabValues, composited, mov
 
 /// What the slices of a pixel gather.
 pub(crate) fn pixel<R: Real>(of: &impl Samples<R>, pixel: [R; 2]) -> Gathered<R> {
-    let (frame, settings) = (of.frame(), of.settings());
+    let (frame, settings) = (&of.frame_of(pixel), of.settings());
     let axis = frame.slice_axis as usize;
     let slice = |i| slice_of(frame, i);
     let on_slice = |i| slice(i) as u32;
@@ -86,7 +86,7 @@ pub fn fragment<R: Real, V>(
     if slope.abs() < R::from_f32(1e-20) {
         return None;
     }
-    let [t0, t1] = domain_interval(frame, &world, &voxel);
+    let [t0, t1] = visible_interval(frame, domain_interval(frame, &world, &voxel), &world);
     let center = R::from_f64(f64::from(slice)) + R::from_f64(0.5);
     let t = (center - voxel.origin[axis]) / slope;
     if !(t0 <= t && t < t1) {

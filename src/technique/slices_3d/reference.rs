@@ -1,7 +1,7 @@
 //! View-aligned slicing on the CPU: CPU reference of `shaders/slices_3d.wgsl`.
 
 use crate::lattice::plane_slab;
-use crate::ray::{domain_interval, pixel_ray, plane_length, plane_t, voxel_ray};
+use crate::ray::{domain_interval, pixel_ray, plane_length, plane_t, visible_interval, voxel_ray};
 use crate::real::Real;
 use crate::shaders::Frame;
 use crate::technique::blend::Fragment;
@@ -10,7 +10,7 @@ use std::cmp::Ordering;
 
 /// What the slices of a pixel gather.
 pub(crate) fn pixel<R: Real>(of: &impl Samples<R>, pixel: [R; 2]) -> Gathered<R> {
-    let (frame, settings) = (of.frame(), of.settings());
+    let (frame, settings) = (&of.frame_of(pixel), of.settings());
     let plane = |i| plane_of(frame, i);
     let value_at = |p| of.value(p);
     if settings.mode.is_projection() {
@@ -45,7 +45,7 @@ pub fn fragment<R: Real, V>(
 ) -> Option<Option<Fragment<R, V>>> {
     let world = pixel_ray(frame, pixel);
     let voxel = voxel_ray(frame, &world);
-    let [t0, t1] = domain_interval(frame, &world, &voxel);
+    let [t0, t1] = visible_interval(frame, domain_interval(frame, &world, &voxel), &world);
     let t = plane_t(frame, &world, plane);
     if !(t0 <= t && t < t1) {
         return None;
@@ -63,7 +63,7 @@ pub fn slab<R: Real>(
 ) -> Option<Option<Fragment<R, SlabValues<R>>>> {
     let world = pixel_ray(frame, pixel);
     let voxel = voxel_ray(frame, &world);
-    let interval = domain_interval(frame, &world, &voxel);
+    let interval = visible_interval(frame, domain_interval(frame, &world, &voxel), &world);
     let slab = plane_slab(frame, &world, interval, plane);
     if slab.length.partial_cmp(&R::from_f64(0.0)) != Some(Ordering::Greater) {
         return None;

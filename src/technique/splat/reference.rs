@@ -19,7 +19,9 @@ use super::line::Line;
 use super::open_sheets::{OpenSheets, edge_of};
 use super::{Sheets, points, sheets_of};
 use crate::lattice::{Segment, Slab, main_axis};
-use crate::ray::{Ray, domain_interval, pixel_ray, plane_length, plane_t, vector, voxel_ray};
+use crate::ray::{
+    Ray, domain_interval, pixel_ray, plane_length, plane_t, vector, visible_interval, voxel_ray,
+};
 use crate::real::{Real, dot};
 use crate::shaders::Frame;
 use crate::technique::Mode;
@@ -35,7 +37,7 @@ pub(crate) fn pixel<R: Real>(of: &impl Samples<R>, pixel: [R; 2]) -> Gathered<R>
     if let Some(points) = of.points() {
         return points::reference::pixel(of, points, pixel);
     }
-    let (frame, settings) = (of.frame(), of.settings());
+    let (frame, settings) = (&of.frame_of(pixel), of.settings());
     let world = pixel_ray(frame, pixel);
     let voxel = voxel_ray(frame, &world);
     let axis = match frame.slice_axis {
@@ -90,11 +92,11 @@ impl<R: Real> Range<R> {
     fn of(frame: &Frame, take: Take, world: &Ray<R>, voxel: &Ray<R>) -> Option<Self> {
         let endless = R::from_f32(ENDLESS);
         if take.is_added() {
-            let t = [R::from_f64(0.0), endless];
+            let t = visible_interval(frame, [R::from_f64(0.0), endless], world);
             let kept = [frame.splat_first, frame.splat_last];
             return Some(Self { t, part: t, kept });
         }
-        let t = domain_interval(frame, world, voxel);
+        let t = visible_interval(frame, domain_interval(frame, world, voxel), world);
         (t[0] < t[1]).then(|| Self {
             t,
             part: [-endless, endless],

@@ -176,7 +176,7 @@ pub const FEATURES: &[Feature] = &[
 ];
 
 /// Pairs whose picture is that of the second alone, since it has the first without a word: fields of the weather are
-/// pre-integrated, and sections show means.
+/// pre-integrated, sections show means, and spheres are the host's on every device.
 pub const GIVEN: &[[&str; 2]] = &[
     ["pre-integrated classification", "lines of the wind"],
     ["pre-integrated classification", "lines of the map"],
@@ -187,6 +187,7 @@ pub const GIVEN: &[[&str; 2]] = &[
         "pre-integrated classification",
         "scattered points on a grid",
     ],
+    ["CPU reference", "scattered points as spheres"],
     ["mean", "section"],
     ["mean", "sections of three directions"],
     ["mean", "thick section"],

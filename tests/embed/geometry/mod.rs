@@ -2,6 +2,7 @@
 //! what is refused.
 
 mod closed_form;
+mod formats;
 mod refused;
 mod seen;
 mod volume;
@@ -46,11 +47,22 @@ fn drawn<'h>(
     (camera, depth): (&Camera, &HostDepth),
     extent: [u32; 2],
 ) -> Drawn<'h> {
-    let mut geometry = Geometry::new(host.gpu(), shapes, desc(depth.nearer)).unwrap();
+    drawn_in(host, shapes, (camera, depth), (extent, desc(depth.nearer)))
+}
+
+/// The same in another depth format.
+fn drawn_in<'h>(
+    host: &'h Host,
+    shapes: &geometry::Geometry,
+    (camera, depth): (&Camera, &HostDepth),
+    (extent, desc): ([u32; 2], GeometryDesc),
+) -> Drawn<'h> {
+    let format = desc.target.depth.unwrap().format;
+    let mut geometry = Geometry::new(host.gpu(), shapes, desc).unwrap();
     let image = HostImage::new(host, FORMAT, extent);
     let far = 1.0 - depth.nearer.near() as f32;
     let nothing = vec![far; (extent[0] * extent[1]) as usize];
-    let buffer = DepthImage::new(host, extent, &nothing, ATTACHED);
+    let buffer = DepthImage::of_format(host, format, extent, &nothing, ATTACHED);
     let shot = FrameInfo {
         frame: 0,
         camera,
@@ -67,7 +79,10 @@ fn drawn<'h>(
     });
     Drawn {
         pixels: image.numbers(),
-        depths: buffer.numbers(),
+        depths: match format {
+            vk::Format::D32_SFLOAT => buffer.numbers(),
+            _ => Vec::new(),
+        },
         buffer,
     }
 }

@@ -18,10 +18,6 @@ pub const RULES: &[Rule] = &[
         "bricks of all volumes at once: n times the memory for n volumes, and grids of their own cut across bricks",
     ),
     not_built(
-        "--stream is not for --flow, --map, --barbs and --ground",
-        "the depth of lines would be read by each brick: 4 bytes a pixel and brick",
-    ),
-    not_built(
         "--stream is not for --ambient-occlusion and --shadows",
         "light goes through the whole volume first: the file is read twice",
     ),
@@ -45,9 +41,5 @@ pub const RULES: &[Rule] = &[
     not_built(
         "--stream is not for --device reference",
         "the CPU reference follows one pixel after another through the whole volume: each brick would be read once a row of tiles",
-    ),
-    not_built(
-        "the CPU references draw volumes alone",
-        "each ray against each of some 15 000 round cones on the host, without the lists that the device keeps of them a tile",
     ),
 ];

@@ -66,14 +66,14 @@ pub const RULES: &[Rule] = &[
     of(
         SPHERES,
         no_meaning(
-            "geometry in the picture is for rays through the same places of all pixels",
-            "a technique is for the samples of a volume, and spheres are none",
+            "a technique is of the samples of a volume",
+            "spheres have no samples, and are drawn before any technique",
         ),
     ),
     of(
         &["path tracing"],
         not_built(
-            "geometry in the picture is for rays through the same places of all pixels",
+            "geometry in the picture is for rays or slices that end where it is drawn",
             "light that lines reflect: each flight of each path against some 15 000 round cones, in a tree that the device goes down",
         ),
     ),
@@ -107,9 +107,8 @@ pub const RULES: &[Rule] = &[
          would blur their edges by a voxel",
     ),
     not_built(
-        "geometry in the picture is for rays through the same places of all pixels",
-        "slices and splats between lines: a test against a depth of 4 bytes a pixel for each slice, 443 times a picture of 256^3 \
-         voxels; shear-warp has no depth at its base pixels",
+        "geometry in the picture is for rays or slices that end where it is drawn",
+        "shear-warp has no depth at its base pixels: geometry would be drawn for them, as soft as a base pixel, a voxel",
     ),
     not_built(
         "--aov depth needs --technique raycast",
