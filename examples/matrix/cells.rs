@@ -554,6 +554,7 @@ impl Matter {
             labels: map,
             function: function(),
             gradient_transfer: TransferFunction {
+                medium: None,
                 gradient_transfer: Some(GradientTransfer {
                     steepest: Some(0.4),
                     share: Vec::new(),
@@ -694,6 +695,7 @@ fn function() -> TransferFunction {
         reference_length: None,
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     }
 }
 
@@ -720,5 +722,6 @@ fn label_function() -> TransferFunction {
         reference_length: None,
         interpolation: Interpolation::Step,
         gradient_transfer: None,
+        medium: None,
     }
 }

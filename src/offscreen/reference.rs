@@ -27,8 +27,9 @@ use crate::technique::{
     SampleInputs, Settings, isosurface,
 };
 use crate::transfer::{
-    Absorption, PackedWidgets, Points, SlabTable, Table, TransferFunction, classify_by_points,
-    classify_by_table, classify_slab,
+    Absorption, MediumTransfer, PackedWidgets, Points, SlabTable, Table, TransferFunction,
+    classify_by_points, classify_by_table, classify_slab, emission_by_points,
+    extinctions_by_points,
 };
 use crate::volume::kernel::{convolved, convolved_in_slice};
 use crate::volume::sample::{linear, linear_in_slice, nearest};
@@ -181,6 +182,8 @@ struct ReferenceRays<'a, R> {
     classifiers: Vec<Classifier>,
     /// What colours surfaces by another volume.
     paint: Option<Points>,
+    /// Of a picture of light that scatters, what the function says of it.
+    medium: Option<Points>,
     /// What the gradient makes of the only function, where it makes something.
     widgets: Option<PackedWidgets>,
     frame: Frame,
@@ -215,8 +218,7 @@ impl<'a, R: Real> ReferenceRays<'a, R> {
         let space = scene.settings.color_space;
         let classifier = |function: Option<&TransferFunction>| {
             let function = function.ok_or(Error::NoTransferFunction)?;
-            let reference_length = scene.length_of(function);
-            let absorption = Absorption::Extinction { reference_length };
+            let absorption = scene.absorption(function);
             Ok(if scene.settings.preintegrated {
                 Classifier::Slabs(SlabTable::new(function, absorption, space))
             } else if scene.settings.conformance {
@@ -243,6 +245,14 @@ impl<'a, R: Real> ReferenceRays<'a, R> {
         frame.channel_gradient_scale = view.gradient_scales(ranges.zip(scene.roles()));
         frame.flat_gradient = view.flat_gradient(scene.volume.value_range);
         frame.reference_length = scene.reference_length() as f32;
+        let medium = scene.transfer.filter(|_| scene.settings.scatters());
+        let medium = medium.map(|f| Points::new(f, scene.absorption(f), space));
+        if let (Some(points), Some(function)) = (&medium, scene.transfer) {
+            let medium = function.medium.as_ref();
+            let is_colored = medium.is_some_and(MediumTransfer::has_colored_extinction);
+            frame.emission_point_count = points.emission_count;
+            frame.extinction_is_colored = is_colored.into();
+        }
         scene.tell_paths(&mut frame);
         Ok(Self {
             scene,
@@ -252,6 +262,7 @@ impl<'a, R: Real> ReferenceRays<'a, R> {
             marks: marks_of_scene(scene),
             classifiers,
             paint: paint_of(scene),
+            medium,
             widgets,
             alike: scene
                 .alike()
@@ -458,6 +469,18 @@ impl<R: Real> Samples<R> for ReferenceRays<'_, R> {
 
     fn classify(&self, value: R) -> [R; 4] {
         self.classified(0, value)
+    }
+
+    fn extinctions(&self, value: R) -> [R; 3] {
+        match &self.medium {
+            Some(points) => extinctions_by_points(points, value),
+            None => [self.classify(value)[3]; 3],
+        }
+    }
+
+    fn emission(&self, value: R) -> [R; 3] {
+        let points = self.medium.as_ref();
+        points.map_or([R::from_f64(0.0); 3], |p| emission_by_points(p, value))
     }
 
     fn classify_slab(&self, [front, back]: [R; 2]) -> [R; 4] {

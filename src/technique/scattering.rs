@@ -37,6 +37,11 @@ impl Settings {
         }
     }
 
+    /// Whether matter scatters light, once or more often.
+    pub(crate) fn scatters(&self) -> bool {
+        self.single_scattering.is_some() || self.technique.traces_paths()
+    }
+
     /// Whether matter takes light of the sky away.
     pub(super) fn has_hindered_sky(&self) -> bool {
         let is_hindered = self

@@ -1,6 +1,6 @@
 //! The window of `--window LO,HI`: the interval of values that a function is spread over.
 
-use super::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
+use super::{ColorPoint, Interpolation, MediumTransfer, OpacityPoint, TransferFunction};
 
 /// An interval of values, `low < high`, both finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,6 +81,7 @@ impl Window {
             reference_length: None,
             interpolation: Interpolation::Linear,
             gradient_transfer: None,
+            medium: None,
         }
     }
 }
@@ -95,6 +96,7 @@ impl TransferFunction {
         for point in &mut placed.opacity {
             point.value = window.at(point.value);
         }
+        placed.medium = placed.medium.map(|m| m.moved(|v| window.at(v)));
         let gradient_transfer = self.gradient_transfer.as_ref();
         placed.gradient_transfer = gradient_transfer
             .map(|gradient_transfer| gradient_transfer.moved(|v| window.at(v), window.length()));
@@ -107,7 +109,9 @@ impl TransferFunction {
     pub fn spread_over(&self, window: Window) -> Self {
         let values = || {
             let color = self.color.iter().map(|p| p.value);
-            color.chain(self.opacity.iter().map(|p| p.value))
+            let medium = self.medium.iter().flat_map(MediumTransfer::values);
+            let opacity = self.opacity.iter().map(|p| p.value);
+            color.chain(opacity).chain(medium)
         };
         let first = values().fold(f64::INFINITY, f64::min);
         let last = values().fold(f64::NEG_INFINITY, f64::max);
@@ -125,6 +129,7 @@ impl TransferFunction {
         for point in &mut spread.opacity {
             point.value = moved(point.value);
         }
+        spread.medium = spread.medium.map(|medium| medium.moved(moved));
         let slope = if last > first {
             window.length() / (last - first)
         } else {
