@@ -27,9 +27,8 @@ use crate::technique::{
     SampleInputs, Settings, isosurface,
 };
 use crate::transfer::{
-    Absorption, MediumTransfer, PackedWidgets, Points, SlabTable, Table, TransferFunction,
-    classify_by_points, classify_by_table, classify_slab, emission_by_points,
-    extinctions_by_points,
+    Absorption, PackedWidgets, Points, SlabTable, Table, TransferFunction, classify_by_points,
+    classify_by_table, classify_slab, emission_by_points, extinctions_by_points,
 };
 use crate::volume::kernel::{convolved, convolved_in_slice};
 use crate::volume::sample::{linear, linear_in_slice, nearest};
@@ -249,7 +248,7 @@ impl<'a, R: Real> ReferenceRays<'a, R> {
         let medium = medium.map(|f| Points::new(f, scene.absorption(f), space));
         if let (Some(points), Some(function)) = (&medium, scene.transfer) {
             let medium = function.medium.as_ref();
-            let is_colored = medium.is_some_and(MediumTransfer::has_colored_extinction);
+            let is_colored = medium.is_some_and(|medium| medium.has_colored_extinction());
             frame.emission_point_count = points.emission_count;
             frame.extinction_is_colored = is_colored.into();
         }

@@ -8,8 +8,7 @@ use crate::gpu::{
 use crate::picture::ColorSpace;
 use crate::shaders::TABLE_WIDTH;
 use crate::transfer::{
-    Absorption, Interpolation, MediumTransfer, PackedWidgets, Points, SlabTable, Table,
-    TransferFunction,
+    Absorption, Interpolation, PackedWidgets, Points, SlabTable, Table, TransferFunction,
 };
 use ash::vk;
 use std::sync::Arc;
@@ -111,7 +110,7 @@ impl GpuTransfer {
                 opacity_point_count: own.opacity_count,
                 emission_point_count: own.emission_count,
                 opacity_is_extinction: own.are_extinctions,
-                extinction_is_colored: medium.is_some_and(MediumTransfer::has_colored_extinction),
+                extinction_is_colored: medium.is_some_and(|medium| medium.has_colored_extinction()),
                 colors_are_linear: space == ColorSpace::Linear && !own.decode,
                 first_widget_entry: 0,
                 interpolation: function.interpolation,

@@ -4,7 +4,7 @@ use super::pathtrace::{Lamp, LampShape};
 use super::{Error, Filter, Lattice, Mode, Settings, SingleScattering, SkipBy, Technique};
 use crate::picture::ColorSpace;
 use crate::technique::compatibility::refuse;
-use crate::transfer::{MediumTransfer, TransferFunction};
+use crate::transfer::TransferFunction;
 
 const SINGLE: &str = "single scattering";
 
@@ -85,7 +85,7 @@ impl Settings {
         function: Option<&TransferFunction>,
     ) -> Result<(), Error> {
         let medium = function.and_then(|function| function.medium.as_ref());
-        let is_colored = medium.is_some_and(MediumTransfer::has_colored_extinction);
+        let is_colored = medium.is_some_and(|medium| medium.has_colored_extinction());
         let is_there = is_colored && self.single_scattering.is_some();
         let of = "an extinction that all colours share";
         let found = "one of three colours, for which there is --technique pathtrace";

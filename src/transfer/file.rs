@@ -199,7 +199,7 @@ pub(super) fn transfer_function_in(
         reference_length,
         interpolation,
         gradient_transfer,
-        medium,
+        medium: medium.map(Box::new),
     };
     Ok(match extinction {
         Some(points) => function.with_extinction(points),
@@ -249,7 +249,7 @@ pub fn transfer_function_to_json(function: &TransferFunction) -> String {
     let color = function.color.iter();
     let color = color.map(|p| row(&[p.value, p.srgb[0], p.srgb[1], p.srgb[2]]));
     let opacity = function.opacity.iter().map(|p| row(&[p.value, p.opacity]));
-    let medium = function.medium.as_ref();
+    let medium = function.medium.as_deref();
     let opacity = match medium.is_some_and(|medium| !medium.extinction.is_empty()) {
         true => String::new(),
         false => {

@@ -137,10 +137,10 @@ impl TransferFunction {
         Self {
             opacity,
             reference_length: length,
-            medium: Some(MediumTransfer {
+            medium: Some(Box::new(MediumTransfer {
                 extinction,
-                ..self.medium.unwrap_or_default()
-            }),
+                ..*self.medium.unwrap_or_default()
+            })),
             ..self
         }
     }
@@ -167,8 +167,9 @@ impl TransferFunction {
 
     /// Whether matter sends out light.
     pub fn emits(&self) -> bool {
-        let medium = self.medium.as_ref();
-        medium.is_some_and(|medium| !medium.emission.is_empty())
+        self.medium
+            .as_ref()
+            .is_some_and(|medium| !medium.emission.is_empty())
     }
 
     fn of_medium(
@@ -178,7 +179,7 @@ impl TransferFunction {
     ) -> Option<[f64; 3]> {
         let list = self
             .medium
-            .as_ref()
+            .as_deref()
             .map(list)
             .filter(|list| !list.is_empty())?;
         let points = list.iter().map(|point| (point.value, point.linear));
@@ -211,12 +212,12 @@ impl TransferFunction {
     }
 
     /// The colours alone: of a function that another one makes opaque.
-    pub(super) fn medium_of_colors(&self, other: &Self) -> Option<MediumTransfer> {
+    pub(super) fn medium_of_colors(&self, other: &Self) -> Option<Box<MediumTransfer>> {
         let albedo = other.medium.as_ref().map(|medium| medium.albedo.clone());
         let medium = MediumTransfer {
             albedo: albedo.unwrap_or_default(),
-            ..self.medium.clone().unwrap_or_default()
+            ..*self.medium.clone().unwrap_or_default()
         };
-        (!medium.is_empty()).then_some(medium)
+        (!medium.is_empty()).then(|| Box::new(medium))
     }
 }

@@ -101,7 +101,7 @@ pub struct TransferFunction {
     /// What the gradient makes of it; `None`: nothing.
     pub gradient_transfer: Option<GradientTransfer>,
     /// What techniques that scatter light take in place of colour and opacity; `None`: nothing else.
-    pub medium: Option<MediumTransfer>,
+    pub medium: Option<Box<MediumTransfer>>,
 }
 
 /// sRGB colour at a value.

@@ -41,18 +41,18 @@ impl TransferFunction {
                 ..*left
             }),
             medium: self.medium.as_ref().map(|medium| {
-                let by_lines = |points: &Vec<MediumPoint>| {
+                let by_lines = |points: &[MediumPoint]| {
                     steps(points, |left, right| MediumPoint {
                         value: right.value,
                         ..*left
                     })
                 };
-                MediumTransfer {
+                Box::new(MediumTransfer {
                     extinction: by_lines(&medium.extinction),
                     albedo: by_lines(&medium.albedo),
                     emission: by_lines(&medium.emission),
                     phase: medium.phase,
-                }
+                })
             }),
             interpolation: Interpolation::Linear,
             ..self.clone()

@@ -33,11 +33,13 @@ impl Points {
     /// The points of `function`.
     pub fn new(function: &TransferFunction, absorption: Absorption, space: ColorSpace) -> Self {
         let medium = match absorption {
-            Absorption::Medium { .. } => function.medium.as_ref(),
+            Absorption::Medium { .. } => function.medium.as_deref(),
             Absorption::Extinction { .. } | Absorption::Opacity => None,
         };
         let [extinction, albedo, emission] = match medium {
-            Some(medium) => [&medium.extinction, &medium.albedo, &medium.emission].map(entries),
+            Some(medium) => {
+                [&medium.extinction, &medium.albedo, &medium.emission].map(|list| entries(list))
+            }
             None => [const { Vec::new() }; 3],
         };
         let color = function.color.iter().map(|p| {
@@ -78,7 +80,7 @@ impl Points {
 }
 
 /// Points of a medium.
-fn entries(points: &Vec<MediumPoint>) -> Vec<[f32; 4]> {
+fn entries(points: &[MediumPoint]) -> Vec<[f32; 4]> {
     let entry = |p: &MediumPoint| [p.value, p.linear[0], p.linear[1], p.linear[2]];
     points.iter().map(|p| entry(p).map(|x| x as f32)).collect()
 }

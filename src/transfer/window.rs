@@ -1,6 +1,6 @@
 //! The window of `--window LO,HI`: the interval of values that a function is spread over.
 
-use super::{ColorPoint, Interpolation, MediumTransfer, OpacityPoint, TransferFunction};
+use super::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
 
 /// An interval of values, `low < high`, both finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,7 +96,8 @@ impl TransferFunction {
         for point in &mut placed.opacity {
             point.value = window.at(point.value);
         }
-        placed.medium = placed.medium.map(|m| m.moved(|v| window.at(v)));
+        let medium = placed.medium.map(|m| m.moved(|v| window.at(v)));
+        placed.medium = medium.map(Box::new);
         let gradient_transfer = self.gradient_transfer.as_ref();
         placed.gradient_transfer = gradient_transfer
             .map(|gradient_transfer| gradient_transfer.moved(|v| window.at(v), window.length()));
@@ -109,7 +110,7 @@ impl TransferFunction {
     pub fn spread_over(&self, window: Window) -> Self {
         let values = || {
             let color = self.color.iter().map(|p| p.value);
-            let medium = self.medium.iter().flat_map(MediumTransfer::values);
+            let medium = self.medium.iter().flat_map(|medium| medium.values());
             let opacity = self.opacity.iter().map(|p| p.value);
             color.chain(opacity).chain(medium)
         };
@@ -129,7 +130,8 @@ impl TransferFunction {
         for point in &mut spread.opacity {
             point.value = moved(point.value);
         }
-        spread.medium = spread.medium.map(|medium| medium.moved(moved));
+        let medium = spread.medium.map(|medium| medium.moved(moved));
+        spread.medium = medium.map(Box::new);
         let slope = if last > first {
             window.length() / (last - first)
         } else {

@@ -331,7 +331,7 @@ impl ClassificationFlags {
     }
 
     /// What the files of these words say of matter that scatters light; `None` too where they are wrong.
-    pub fn medium(&self) -> Option<MediumTransfer> {
+    pub fn medium(&self) -> Option<Box<MediumTransfer>> {
         let part = |part: &Option<Inlined>| self.part(part).ok().flatten();
         let mut function = self.function_of_file().ok().flatten().unwrap_or(NOTHING);
         if let Some(color) = part(&self.color_function) {

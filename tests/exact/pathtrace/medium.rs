@@ -31,11 +31,11 @@ pub fn medium(
         reference_length: None,
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
-        medium: Some(MediumTransfer {
+        medium: Some(Box::new(MediumTransfer {
             albedo,
             emission,
             ..MediumTransfer::default()
-        }),
+        })),
     };
     grey.with_extinction(extinction)
 }
