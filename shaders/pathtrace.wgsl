@@ -4,6 +4,12 @@
 //     one is real with      P = extinction / majorant            W *= albedo
 //     light                 L += W p(c) E T                      T: product of 1 - P along the way (ratio tracking, Novak et al. 2014)
 //     it leaves             L += W sky
+//     matter shines         L += W E / majorant                  at each tentative collision
+//
+// Of three extinctions one majorant and one chance, by what they would take of the weights (Kutz et al. 2017):
+//
+//     P = a / (a + b)       a = mean of W sigma                  b = mean of W (majorant - sigma)
+//     real   W *= sigma / majorant / P                           null   W *= (1 - sigma / majorant) / (1 - P)
 //
 // The picture is the mean over paths. One loop over events: lanes that have ended a path go on with the next.
 // CPU reference: src/technique/pathtrace/reference.rs.
@@ -14,6 +20,7 @@
 #import mask
 #import holes_{holes}
 #import transfer_{transfer}
+#import medium
 #import gradient_central
 #import distance_map
 #import majorants
@@ -35,11 +42,12 @@ const PATH: u32 = 1u;
 const SHADOW: u32 = 2u;
 const SCATTER: u32 = 3u;
 
-// Draws of a collision, and of the direction behind it.
-const OF_COLLISION: u32 = 0x40000000u;
-const OF_DIRECTION: u32 = 0x80000000u;
-// And of a direction to a sky.
-const OF_SKY: u32 = 0xc0000000u;
+// Numbers of a draw: of the way, of a collision, of the direction behind it and of that to a sky. They differ in low bits: of
+// keys that differ in the highest alone pcg4d has numbers that hang together.
+const NUMBERS_OF_DRAW: u32 = 4u;
+const OF_COLLISION: u32 = 1u;
+const OF_DIRECTION: u32 = 2u;
+const OF_SKY: u32 = 3u;
 
 // Behind so many bounces, weights under LEAST end by chance.
 const FEWEST_BOUNCES: u32 = 4u;
@@ -74,7 +82,7 @@ struct Collision {
     albedo: vec3<f32>,
     // What arrives if nothing is in the way, and the part of it that does.
     light: vec3<f32>,
-    through: f32,
+    through: vec3<f32>,
     // World length to where it comes from.
     reach: f32,
 }
@@ -110,25 +118,36 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
             path = Path(vec3(1.0), vec3(0.0), 0u, 1u, false, 0.0);
             state = PATH;
         }
-        key.z = path.draw;
+        key.z = NUMBERS_OF_DRAW * path.draw;
         path.draw++;
         let u = random_numbers(key);
         let is_tentative = step_by(&walk, u.x);
-        var chance = 0.0;
+        // Of each colour, that a tentative collision is a real one.
+        var chances = vec3(0.0);
         var color = vec3(0.0);
         let place = walk.voxel.origin + walk.t * walk.voxel.direction;
         if is_tentative && volume_is_valid(footprint_of(place)) {
-            let matter = classify(volume_value(place));
-            chance = min(matter.extinction * frame.path_density / walk.majorant, 1.0);
+            let value = volume_value(place);
+            let matter = classify(value);
+            var extinctions = vec3(matter.extinction);
+            if frame.extinction_is_colored != 0u {
+                extinctions = extinctions_at(value);
+            }
+            chances = min(extinctions * frame.path_density / walk.majorant, vec3(1.0));
             color = matter.color;
+            if frame.emission_point_count != 0u && state == PATH {
+                path.radiance += path.weight * emission_at(value) / walk.majorant;
+            }
         }
+        let chance = chance_of(path.weight, chances);
         let has_left = !is_tentative && walk.t >= walk.end;
         if state == SHADOW {
-            at.through *= 1.0 - chance;
-            if at.through < LEAST {
-                at.through = select(0.0, LEAST, u.y * LEAST < at.through);
+            at.through *= 1.0 - chances;
+            let most = max(at.through.x, max(at.through.y, at.through.z));
+            if most < LEAST {
+                at.through *= select(0.0, LEAST / most, u.y * LEAST < most);
             }
-            if has_left || at.through == 0.0 {
+            if has_left || all(at.through == vec3(0.0)) {
                 path.radiance += path.weight * at.light * at.through;
                 state = SCATTER;
             }
@@ -138,23 +157,25 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
             state = NEXT;
         } else if u.y < chance {
             path.has_met = true;
-            if frame.path_bounces == 0u {
-                path.radiance = color;
+            path.weight *= of_colors(chances, chance);
+            // Without bounces matter shines: by itself, or in its colours.
+            if frame.path_bounces == 0u && frame.emission_point_count == 0u {
+                path.radiance = path.weight * color;
             }
             if path.bounces == frame.path_bounces {
                 state = NEXT;
             } else {
-                key.z |= OF_COLLISION;
+                key.z += OF_COLLISION;
                 let numbers = random_numbers(key);
                 at.place = walk.world.origin + walk.t * walk.world.direction;
                 at.direction = walk.world.direction;
                 at.normal = normal_at(place, at.direction, numbers.x);
                 at.albedo = color * frame.path_albedo;
-                at.through = 1.0;
+                at.through = vec3(1.0);
                 if !is_coated(at) {
                     path.weight *= at.albedo;
                 }
-                key.z = path.draw | OF_SKY;
+                key.z = NUMBERS_OF_DRAW * path.draw + OF_SKY;
                 let to_light = light_at(&at, numbers, key);
                 state = SCATTER;
                 if any(path.weight * at.light > vec3(0.0)) {
@@ -163,9 +184,11 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
                     state = SHADOW;
                 }
             }
+        } else {
+            path.weight *= of_colors(1.0 - chances, 1.0 - chance);
         }
         if state == SCATTER {
-            key.z = path.draw | OF_DIRECTION;
+            key.z = NUMBERS_OF_DRAW * path.draw + OF_DIRECTION;
             let numbers = random_numbers(key);
             path.bounces++;
             let next = scattered(at, numbers);
@@ -231,6 +254,20 @@ fn step_by(walk: ptr<function, Walk>, u: f32) -> bool {
     let t = (*walk).t + minus_ln(1.0 - u) / (*walk).majorant;
     (*walk).t = min(t, reach);
     return t < reach;
+}
+
+// That a tentative collision is a real one: by what all colours would take of the weights.
+fn chance_of(weight: vec3<f32>, chances: vec3<f32>) -> f32 {
+    if frame.extinction_is_colored == 0u {
+        return chances.x;
+    }
+    let real = dot(weight, chances);
+    return real / (real + dot(weight, 1.0 - chances));
+}
+
+// What a choice makes of the weights that all colours have taken by one chance.
+fn of_colors(chances: vec3<f32>, chance: f32) -> vec3<f32> {
+    return select(vec3(1.0), chances / chance, frame.extinction_is_colored != 0u);
 }
 
 // The normal of a surface at a collision, on the side that the path comes from; 0: it is one in the medium.

@@ -13,7 +13,7 @@ use crate::technique::splat::points::reference_length;
 use crate::technique::{
     CutFaces, Error, GradientStorage, InPixel, Mode, Role, SampleInputs, Settings, View,
 };
-use crate::transfer::{HomogeneousRanges, Tolerance, TransferFunction};
+use crate::transfer::{Absorption, HomogeneousRanges, Tolerance, TransferFunction};
 use crate::volume::Volume;
 
 /// One of several things seen in the same place.
@@ -180,6 +180,7 @@ impl<'a> Scene<'a> {
             self.mix() == SampleInputs::Scalar && !matches!(self.beside, Beside::Points(_));
         self.settings.check_path_volume(is_one, 1)?;
         self.settings.check_scattering_volume(is_one, 1)?;
+        self.settings.check_scattering_function(self.transfer)?;
         if self.uses_gradient() {
             self.settings.check_graded()?;
         }
@@ -273,6 +274,11 @@ impl<'a> Scene<'a> {
         own.unwrap_or_else(|| self.default_length()) / self.settings.density_of_rays()
     }
 
+    /// How a function of this scene takes light away: of matter that scatters by what it says of that.
+    pub(crate) fn absorption(&self, function: &TransferFunction) -> Absorption {
+        self.settings.absorption(function, self.default_length())
+    }
+
     /// Tells the parameters what paths want to know of the volume and its function.
     pub(crate) fn tell_paths(&self, frame: &mut Frame) {
         let (true, Some(function)) = (self.settings.technique.traces_paths(), self.transfer) else {
@@ -280,7 +286,7 @@ impl<'a> Scene<'a> {
         };
         let medium = Medium {
             function,
-            reference_length: self.length_of(function),
+            absorption: self.absorption(function),
             has_holes: self.volume.validity.is_some(),
             is_searched: self.settings.conformance,
             value_range: self.volume.value_range,

@@ -564,6 +564,7 @@ impl Matter {
             labels: map,
             function: function(),
             gradient_transfer: TransferFunction {
+                medium: None,
                 gradient_transfer: Some(GradientTransfer {
                     steepest: Some(0.4),
                     share: Vec::new(),
@@ -717,6 +718,7 @@ fn function() -> TransferFunction {
         reference_length: None,
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     }
 }
 
@@ -743,5 +745,6 @@ fn label_function() -> TransferFunction {
         reference_length: None,
         interpolation: Interpolation::Step,
         gradient_transfer: None,
+        medium: None,
     }
 }

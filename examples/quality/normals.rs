@@ -131,6 +131,7 @@ fn cosines(
         reference_length: None,
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     };
     let scene = Scene {
         volume: signal,

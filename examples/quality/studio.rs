@@ -61,6 +61,7 @@ pub fn transfer_of(
         reference_length: Some(1.0),
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     }
 }
 

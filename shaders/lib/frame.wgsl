@@ -268,6 +268,11 @@ struct Frame {
     scattering_depth: f32,
     // Segments of a ray are step_world long over its slope to `forward`, which counts as this at least: 1 where all are alike.
     least_slope: f32,
+    // A medium: emission points behind those of opacity; whether these are (value, extinctions times reference_length of red,
+    // green and blue); and whether the three differ.
+    emission_point_count: u32,
+    opacity_is_extinction: u32,
+    extinction_is_colored: u32,
     path_majorants: array<vec4<f32>, MAJORANT_VECTORS>,
 }
 

@@ -1,6 +1,6 @@
 // Light that matter scatters once on its way to the eye (Kajiya and Von Herzen 1984). In place of its colour a sample has
 //
-//     S = albedo (sum over lights of p(c) E T + T_sky sky)        E = pi colour,  c between the directions of travel
+//     S = albedo (sum over lights of p(c) E T + T_sky sky) + emission / sigma        E = pi colour,  c between the directions of travel
 //
 // and of a point pi colour d^2 times the mean of 1 / r^2 over its segment, d the distance where that is pi colour. Where light is
 // not followed from here on, T comes from the light volume. CPU reference: src/technique/scattered_light.rs.
@@ -10,13 +10,30 @@
 #import light_ray
 #import phase
 #import point_light
+#import medium
+
+// Optical depth of a step of matter that only shines: so little that its light is emission d, and that nothing is in the way.
+const LEAST_DEPTH: f32 = 1.0 / 16777216.0;
 
 fn material_of(sample: Sample) -> Classified {
     let material = classify(sample.value);
-    // What is transparent shows no light, and a cut face, seen along no direction, its own colour.
-    if material.extinction == 0.0 || all(sample.ray_direction == vec3(0.0)) {
+    // A cut face, seen along no direction, shows its own colour.
+    if all(sample.ray_direction == vec3(0.0)) {
         return material;
     }
+    var source = vec3(0.0);
+    if material.extinction > 0.0 {
+        source = material.color * light_from_lights(sample);
+    }
+    if frame.emission_point_count == 0u {
+        return Classified(source, material.extinction);
+    }
+    let extinction = max(material.extinction, LEAST_DEPTH / frame.step_world);
+    return Classified(source + emission_at(sample.value) / extinction, extinction);
+}
+
+// Of albedo 1.
+fn light_from_lights(sample: Sample) -> vec3<f32> {
     let voxel = voxel_of(sample.place);
     let place = vec4(voxel, 1.0) * frame.world_from_voxel;
     var light = scattered_light(0u, voxel, frame.occlusion_strength != 0.0) * frame.path_sky;
@@ -37,5 +54,5 @@ fn material_of(sample: Sample) -> Classified {
         }
         light += part * phase_value(dot(sample.ray_direction, way)) * frame.light_colors[i].xyz;
     }
-    return Classified(frame.path_albedo * material.color * light, material.extinction);
+    return frame.path_albedo * light;
 }

@@ -33,11 +33,12 @@ struct Met {
     shows: bool,
 }
 
-// Sample k, which shows nothing where there is no data and where its value is transparent. A cut face has its own
+// Sample k, which shows nothing where there is no data and where its value is transparent, and sends out no light. A cut face has its own
 // colours.
 fn met(segments: RaySegments, k: i32) -> Met {
     let segment = segment_at(segments, k);
     let sample = sample_in(segments, k, segment);
-    let shows = (classify(sample.value).extinction != 0.0) | (k < segments.first);
+    let shines = (frame.emission_point_count != 0u) | (k < segments.first);
+    let shows = (classify(sample.value).extinction != 0.0) | shines;
     return Met(sample, segment, shows & has_data(position_in(segments, segment)));
 }

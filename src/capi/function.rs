@@ -179,6 +179,7 @@ unsafe fn made(desc: *const sv_transfer_function_desc) -> Result<TransferFunctio
             _ => Interpolation::Step,
         },
         gradient_transfer: None,
+        medium: None,
     })
 }
 

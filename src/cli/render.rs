@@ -224,8 +224,8 @@ impl Render {
         let (mut renderer, view) = prepared(&framing, &parts, &layers, device, &views)?;
         // Of the scene with its look: a light that is given falls on what the look lights.
         let idle = view.scene.idle().into_iter();
-        for note in idle.chain(view.notes.iter().map(String::as_str)) {
-            progress.note(note);
+        for note in idle.chain(view.notes.iter().cloned()) {
+            progress.note(&note);
         }
         let View {
             camera, settings, ..

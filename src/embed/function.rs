@@ -55,10 +55,11 @@ impl Function {
         volume.check(gpu, settings)?;
         let spacing = volume.grid().smallest_spacing();
         let made = function.map(|function| {
-            let length = function.reference_length.unwrap_or(spacing);
+            let (length, space) = (function.reference_length, settings.color_space);
+            let absorbing = [(function, settings.absorption(function, spacing))];
             match settings.preintegrated {
-                true => GpuTransfer::preintegrated(gpu, function, length, settings.color_space),
-                false => GpuTransfer::new(gpu, function, length, settings.color_space),
+                true => GpuTransfer::preintegrated(gpu, function, length.unwrap_or(spacing), space),
+                false => GpuTransfer::absorbing(gpu, &absorbing, space),
             }
         });
         let mut skippable = settings.skippable(mix, function, volume.value_range(), None);

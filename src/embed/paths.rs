@@ -89,7 +89,7 @@ impl OfPaths {
         let smallest_spacing = volume.grid().smallest_spacing();
         let fields = settings.path.fields_of(&Medium {
             function,
-            reference_length: function.reference_length.unwrap_or(smallest_spacing),
+            absorption: settings.absorption(function, smallest_spacing),
             has_holes: volume.copies()[0].has_holes(),
             is_searched: settings.conformance,
             value_range: volume.value_range(),

@@ -29,6 +29,7 @@ pub struct Matter {
     crop: Option<[DVec3; 2]>,
     clip_planes: Vec<ClipPlane>,
     density: f64,
+    scatters: bool,
 }
 
 impl Matter {
@@ -44,6 +45,7 @@ impl Matter {
             crop: settings.crop,
             clip_planes: settings.clip_planes.clone(),
             density: settings.density_of_rays(),
+            scatters: settings.scatters(),
         }
     }
 }

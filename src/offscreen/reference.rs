@@ -222,6 +222,8 @@ struct ReferenceRays<'a, R> {
     classifiers: Vec<Classifier>,
     /// What colours surfaces by another volume.
     paint: Option<Points>,
+    /// Of a picture of light that scatters, what the function says of it.
+    medium: Option<Points>,
     /// What the gradient makes of the only function, where it makes something.
     widgets: Option<PackedWidgets>,
     frame: Frame,
@@ -258,8 +260,7 @@ impl<'a, R: Real> ReferenceRays<'a, R> {
         let space = scene.settings.color_space;
         let classifier = |function: Option<&TransferFunction>| {
             let function = function.ok_or(Error::NoTransferFunction)?;
-            let reference_length = scene.length_of(function);
-            let absorption = Absorption::Extinction { reference_length };
+            let absorption = scene.absorption(function);
             Ok(if scene.settings.preintegrated {
                 Classifier::Slabs(SlabTable::new(function, absorption, space))
             } else if scene.settings.conformance {
@@ -286,6 +287,14 @@ impl<'a, R: Real> ReferenceRays<'a, R> {
         frame.channel_gradient_scale = view.gradient_scales(ranges.zip(scene.roles()));
         frame.flat_gradient = view.flat_gradient(scene.volume.value_range);
         frame.reference_length = scene.reference_length() as f32;
+        let medium = scene.transfer.filter(|_| scene.settings.scatters());
+        let medium = medium.map(|f| Points::new(f, scene.absorption(f), space));
+        if let (Some(points), Some(function)) = (&medium, scene.transfer) {
+            let medium = function.medium.as_ref();
+            let is_colored = medium.is_some_and(|medium| medium.has_colored_extinction());
+            frame.emission_point_count = points.emission_count;
+            frame.extinction_is_colored = is_colored.into();
+        }
         scene.tell_paths(&mut frame);
         Ok(Self {
             scene,
@@ -295,6 +304,7 @@ impl<'a, R: Real> ReferenceRays<'a, R> {
             marks: marks_of_scene(scene),
             classifiers,
             paint: paint_of(scene),
+            medium,
             widgets,
             alike: scene
                 .alike()

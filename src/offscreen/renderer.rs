@@ -113,6 +113,7 @@ struct Classifying {
     space: ColorSpace,
     is_preintegrated: bool,
     density: f64,
+    scatters: bool,
 }
 
 impl<'v> Renderer<'v> {

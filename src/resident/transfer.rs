@@ -22,6 +22,13 @@ pub struct TransferLayout {
     pub table_count: u32,
     pub color_point_count: u32,
     pub opacity_point_count: u32,
+    /// Of a medium, behind those of opacity.
+    pub emission_point_count: u32,
+    /// The numbers of opacity points are extinctions times `reference_length`.
+    pub opacity_is_extinction: bool,
+    pub extinction_is_colored: bool,
+    /// Colours are linear numbers already, albedos.
+    pub colors_are_linear: bool,
     /// Where the numbers of [`PackedWidgets`] begin, behind all points.
     pub first_widget_entry: u32,
     pub interpolation: Interpolation,
@@ -72,24 +79,42 @@ impl GpuTransfer {
         space: ColorSpace,
     ) -> Result<Self, Error> {
         let extinction = |reference_length| Absorption::Extinction { reference_length };
+        let functions = functions.iter().map(|&(f, length)| (f, extinction(length)));
+        Self::absorbing(gpu, &functions.collect::<Vec<_>>(), space)
+    }
+
+    /// The same of functions of which each says what its matter takes away.
+    ///
+    /// # Errors
+    /// Where the device gives no memory.
+    pub fn absorbing(
+        gpu: &Arc<Gpu>,
+        functions: &[(&TransferFunction, Absorption)],
+        space: ColorSpace,
+    ) -> Result<Self, Error> {
         let tables = functions
             .iter()
-            .map(|&(function, length)| Table::new(function, extinction(length), space));
+            .map(|&(function, absorption)| Table::new(function, absorption, space));
         let tables: Vec<_> = tables.collect();
         let longest = tables.iter().map(|table| table.entries.len()).max();
         let width = longest.unwrap_or(1).min(TABLE_WIDTH as usize);
         let (mut entries, mut numbers, mut layouts) = (Vec::new(), Vec::new(), Vec::new());
-        for (table, &(function, length)) in tables.iter().zip(functions) {
-            let own = Points::new(function, extinction(length), space);
+        for (table, &(function, absorption)) in tables.iter().zip(functions) {
+            let own = Points::new(function, absorption, space);
+            let medium = function.medium.as_ref().filter(|_| own.are_extinctions);
             layouts.push(TransferLayout {
                 table_first: table.first,
                 table_scale: table.scale,
                 table_count: table.entries.len() as u32,
                 color_point_count: own.color_count,
                 opacity_point_count: own.opacity_count,
+                emission_point_count: own.emission_count,
+                opacity_is_extinction: own.are_extinctions,
+                extinction_is_colored: medium.is_some_and(|medium| medium.has_colored_extinction()),
+                colors_are_linear: space == ColorSpace::Linear && !own.decode,
                 first_widget_entry: 0,
                 interpolation: function.interpolation,
-                reference_length: length as f32,
+                reference_length: own.reference_length() as f32,
                 table_row: (entries.len() / width) as u32,
                 point_first: numbers.len() as u32,
                 slab_first: 0.0,
@@ -102,8 +127,8 @@ impl GpuTransfer {
         }
         // Gradients count where a function is alone.
         let widgets = functions.first();
-        let widgets =
-            widgets.map(|&(function, length)| PackedWidgets::new(function, length, space));
+        let widgets = widgets
+            .map(|&(f, absorption)| PackedWidgets::new(f, absorption.reference_length(), space));
         for layout in &mut layouts {
             layout.first_widget_entry = numbers.len() as u32;
         }

@@ -137,7 +137,12 @@ impl View<'_> {
             opacity_point_count: transfer.opacity_point_count,
             first_widget_entry: transfer.first_widget_entry,
             interpolation_is_step: (transfer.interpolation == Interpolation::Step).into(),
-            color_space_is_display: (self.settings.color_space == ColorSpace::Display).into(),
+            color_space_is_display: (transfer.colors_are_linear
+                || self.settings.color_space == ColorSpace::Display)
+                .into(),
+            emission_point_count: transfer.emission_point_count,
+            opacity_is_extinction: transfer.opacity_is_extinction.into(),
+            extinction_is_colored: transfer.extinction_is_colored.into(),
             brick_dims: self.grid.dims.map(|n| n as f32),
             is_first_brick: 1,
             is_only_brick: 1,

@@ -246,6 +246,7 @@ impl View<'_> {
             reference_length: None,
             interpolation: Interpolation::Step,
             gradient_transfer: None,
+            medium: None,
         })
     }
 }

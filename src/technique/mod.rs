@@ -100,7 +100,7 @@ pub use patches::{BATCH_SLICES, PatchRoom, Patches};
 pub use per_mode::{DEFAULT_ATTENUATION, Level, PerMode};
 pub use ray_tiles::{RayBindings, RayTiles};
 pub use recording::{Recording, parameter_ring};
-pub(crate) use scattered_light::scattered;
+pub(crate) use scattered_light::{scattered, shining};
 pub use scattering::SingleScattering;
 pub use shading::{Light, LightSpace, Shading};
 pub use shear_warp::Intermediate;

@@ -57,6 +57,14 @@ pub trait Samples<R: Real> {
     ) -> Option<[R; 4]>;
     /// Colour and extinction of a value.
     fn classify(&self, value: R) -> [R; 4];
+    /// Extinctions per world length of red, green and blue.
+    fn extinctions(&self, value: R) -> [R; 3] {
+        [self.classify(value)[3]; 3]
+    }
+    /// Radiance per world length that matter sends out.
+    fn emission(&self, _value: R) -> [R; 3] {
+        [R::from_f64(0.0); 3]
+    }
     /// The same of a slab with these values at its ends.
     fn classify_slab(&self, ends: [R; 2]) -> [R; 4];
     /// A slab's material, lit in its middle; `tap` finds values so many voxels away from there.

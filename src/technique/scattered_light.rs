@@ -7,6 +7,9 @@ use crate::shaders::Frame;
 use crate::technique::pathtrace::{phase_value, turn_of};
 use crate::technique::shading::Lamps;
 
+/// Optical depth of a step of matter that only shines: so little that its light is E d, and that nothing is in the way.
+const LEAST_DEPTH: f64 = 1.0 / 16_777_216.0;
+
 /// How near a ray passes by a point at least, in steps.
 const LEAST_OF_STEP: f64 = 0.01;
 
@@ -61,6 +64,20 @@ pub fn scattered<R: Real>(
     }
     let factor = R::from_f32(frame.path_albedo);
     std::array::from_fn(|c| factor * albedo[c] * light[c])
+}
+
+/// A source of light that is scattered once, and what matter sends out by itself, E / sigma.
+pub fn shining<R: Real>(
+    frame: &Frame,
+    [r, g, b, extinction]: [R; 4],
+    emission: impl FnOnce() -> [R; 3],
+) -> [R; 4] {
+    if frame.emission_point_count == 0 {
+        return [r, g, b, extinction];
+    }
+    let sigma = extinction.max(R::from_f64(LEAST_DEPTH) / R::from_f32(frame.step_world));
+    let [red, green, blue] = emission().map(|e| e / sigma);
+    [r + red, g + green, b + blue, sigma]
 }
 
 /// Of a point's light, the mean of 1 / r^2 over the segment of a ray, from whose middle the point lies at `to_light`.

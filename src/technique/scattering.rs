@@ -12,6 +12,7 @@
 
 use super::{Error, Lattice, Settings, View};
 use crate::shaders::FrameFields;
+use crate::transfer::{Absorption, TransferFunction};
 
 /// How light comes to matter that scatters it once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -34,6 +35,31 @@ impl Settings {
         match self.single_scattering {
             Some(_) => self.path.density,
             None => 1.0,
+        }
+    }
+
+    /// Whether matter scatters light, once or more often.
+    pub(crate) fn scatters(&self) -> bool {
+        self.single_scattering.is_some() || self.technique.traces_paths()
+    }
+
+    /// How a function takes light away, where opacities are for `default_length` unless it says for which; of matter that
+    /// scatters by what it says of that.
+    pub(crate) fn absorption(
+        &self,
+        function: &TransferFunction,
+        default_length: f64,
+    ) -> Absorption {
+        let reference_length = function.reference_length.unwrap_or(default_length);
+        let density = self.density_of_rays();
+        match self.scatters() && function.medium.is_some() {
+            true => Absorption::Medium {
+                reference_length,
+                density,
+            },
+            false => Absorption::Extinction {
+                reference_length: reference_length / density,
+            },
         }
     }
 

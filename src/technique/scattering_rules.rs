@@ -4,6 +4,7 @@ use super::pathtrace::{Lamp, LampShape};
 use super::{Error, Filter, Lattice, Mode, Settings, SingleScattering, SkipBy, Technique};
 use crate::picture::ColorSpace;
 use crate::technique::compatibility::refuse;
+use crate::transfer::TransferFunction;
 
 const SINGLE: &str = "single scattering";
 
@@ -73,6 +74,22 @@ impl Settings {
         let is_volume = scattering == SingleScattering::Volume;
         refuse(is_wide && !is_volume, of, &"lights that look wide")?;
         path.check()
+    }
+
+    /// Whether rays find light that is scattered once by matter of such a function: by one extinction for all colours.
+    ///
+    /// # Errors
+    /// [`Error::NotFor`].
+    pub(crate) fn check_scattering_function(
+        &self,
+        function: Option<&TransferFunction>,
+    ) -> Result<(), Error> {
+        let medium = function.and_then(|function| function.medium.as_ref());
+        let is_colored = medium.is_some_and(|medium| medium.has_colored_extinction());
+        let is_there = is_colored && self.single_scattering.is_some();
+        let of = "an extinction that all colours share";
+        let found = "one of three colours, for which there is --technique pathtrace";
+        refuse(is_there, SINGLE, of, found)
     }
 
     /// Whether rays through such a volume scatter light once: one of numbers, under a function of the value alone, and for

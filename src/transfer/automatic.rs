@@ -194,6 +194,7 @@ pub(super) fn categorical(summary: &ValueSummary) -> TransferFunction {
         reference_length: reference_length(summary),
         interpolation: Interpolation::Step,
         gradient_transfer: None,
+        medium: None,
     }
 }
 

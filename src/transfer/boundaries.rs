@@ -70,6 +70,7 @@ pub fn boundaries(joint: &JointCounts, reference_length: Option<f64>) -> Option<
         color,
         reference_length,
         interpolation: Interpolation::Linear,
+        medium: None,
         gradient_transfer: Some(GradientTransfer {
             steepest: None,
             share: Vec::new(),

@@ -255,6 +255,7 @@ fn field(summary: &ValueSummary) -> TransferFunction {
         reference_length: reference_length(summary),
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     }
 }
 

@@ -52,6 +52,7 @@ pub fn of_channel(
         reference_length: reference_length(summary),
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     }
 }
 
@@ -79,6 +80,7 @@ pub fn of_colors(diagonal: f64, by_alpha: bool, window: Option<Window>) -> Trans
         reference_length: (length > 0.0 && length.is_finite()).then_some(length),
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     };
     match window {
         Some(window) => function.spread_over(window),

@@ -21,8 +21,8 @@ pub(super) fn wrong(field: &str, wanted: &'static str, found: &Value) -> FilePro
 /// What a number may be, and how that is said.
 #[derive(Clone, Copy)]
 pub(super) struct Expected {
-    fits: fn(f64) -> bool,
-    text: &'static str,
+    pub(super) fits: fn(f64) -> bool,
+    pub(super) text: &'static str,
 }
 
 pub(super) const VALUE: Expected = Expected {

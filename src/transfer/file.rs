@@ -1,8 +1,10 @@
 //! Transfer functions in files: the JSON of `cli.md`, "Transfer function file", and `docs/transfer-functions.md`.
 
 use super::field::{points, wrong};
+use super::file_medium::{MediumKeys, medium_to_json};
 use super::file_widgets::{GradientKeys, gradient_transfer, gradient_transfer_to_json, materials};
-use super::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
+use super::{ColorPoint, Interpolation, MediumPoint, OpacityPoint, TransferFunction};
+use crate::color::encode_srgb;
 use serde::Deserialize;
 use serde_json::Value;
 use std::fs::File;
@@ -53,6 +55,18 @@ pub enum FileProblem {
         origin: &'static str,
         /// What is wrong with it.
         problem: String,
+    },
+    /// Matter that would scatter more light than meets it.
+    #[error(
+        "field `{field}`: albedo over 1 at value {value}: light would grow; wanted 0 to 1, found {found}"
+    )]
+    Grows {
+        /// As in `albedo[3][1]`.
+        field: String,
+        /// Where.
+        value: f64,
+        /// What stands there.
+        found: f64,
     },
     /// A field says something that cannot be.
     #[error("field `{field}`: wanted {wanted}, found {found}")]
@@ -133,6 +147,14 @@ pub(super) fn transfer_function_in(
             _ => return Err(wrong("interpolation", "\"linear\" or \"step\"", found)),
         },
     };
+    let medium_keys = MediumKeys {
+        extinction: &keys.extinction,
+        albedo: &keys.albedo,
+        emission: &keys.emission,
+        phase: &keys.phase,
+    };
+    let mut medium = medium_keys.medium()?;
+    keys.check_beside_medium()?;
     let gradient_keys = GradientKeys {
         gradient_opacity: keys.gradient_opacity,
         steepest: keys.steepest,
@@ -151,9 +173,15 @@ pub(super) fn transfer_function_in(
     let color = match &keys.color {
         Some(found) => points("color", "[value, r, g, b]", found)?,
         None if has_widgets && all_have_colors => vec![[0.0; 4]],
-        None => return Err(missing("color")),
+        None => match medium.as_ref().map(|medium| &medium.albedo) {
+            Some(albedo) if !albedo.is_empty() => albedo.iter().map(as_color).collect(),
+            _ => return Err(missing("color")),
+        },
     };
+    let extinction = medium.as_mut().map(|m| std::mem::take(&mut m.extinction));
+    let extinction = extinction.filter(|points| !points.is_empty());
     let opacity = match &keys.opacity {
+        _ if extinction.is_some() => Vec::new(),
         Some(found) => points("opacity", "[value, opacity]", found)?,
         None if has_widgets => vec![[color[0][0], 0.0]],
         None => return Err(missing("opacity")),
@@ -165,13 +193,24 @@ pub(super) fn transfer_function_in(
     let opacity = opacity
         .into_iter()
         .map(|[value, opacity]| OpacityPoint { value, opacity });
-    Ok(TransferFunction {
+    let function = TransferFunction {
         color: color.collect(),
         opacity: opacity.collect(),
         reference_length,
         interpolation,
         gradient_transfer,
+        medium: medium.map(Box::new),
+    };
+    Ok(match extinction {
+        Some(points) => function.with_extinction(points),
+        None => function,
     })
+}
+
+/// What scatters in a colour is seen in it.
+fn as_color(point: &MediumPoint) -> [f64; 4] {
+    let [r, g, b] = point.linear.map(encode_srgb);
+    [point.value, r, g, b]
 }
 
 /// `materials` say colour and opacity, and between their corners everything is a straight line.
@@ -187,6 +226,10 @@ fn of_materials(
         ("gradient_opacity", &keys.gradient_opacity),
         ("steepest", &keys.steepest),
         ("widgets", &keys.widgets),
+        ("extinction", &keys.extinction),
+        ("albedo", &keys.albedo),
+        ("emission", &keys.emission),
+        ("phase", &keys.phase),
     ];
     for (key, other) in others {
         if let Some(other) = other {
@@ -206,6 +249,14 @@ pub fn transfer_function_to_json(function: &TransferFunction) -> String {
     let color = function.color.iter();
     let color = color.map(|p| row(&[p.value, p.srgb[0], p.srgb[1], p.srgb[2]]));
     let opacity = function.opacity.iter().map(|p| row(&[p.value, p.opacity]));
+    let medium = function.medium.as_deref();
+    let opacity = match medium.is_some_and(|medium| !medium.extinction.is_empty()) {
+        true => String::new(),
+        false => {
+            let rows = opacity.collect::<Vec<_>>().join(",\n");
+            format!("  \"opacity\": [\n{rows}\n  ],\n")
+        }
+    };
     let length = function.reference_length;
     let length = length.map(|length| format!("  \"reference_length\": {},\n", Value::from(length)));
     let interpolation = match function.interpolation {
@@ -213,16 +264,16 @@ pub fn transfer_function_to_json(function: &TransferFunction) -> String {
         Interpolation::Step => "step",
     };
     format!(
-        "{{\n  \"stratavox_transfer_function\": {VERSION},\n  \"color\": [\n{}\n  ],\n  \"opacity\": \
-         [\n{}\n  ],\n{}{}  \"interpolation\": \"{interpolation}\"\n}}\n",
+        "{{\n  \"stratavox_transfer_function\": {VERSION},\n  \"color\": [\n{}\n  ],\n{}{}{}{}  \"interpolation\": \"{interpolation}\"\n}}\n",
         color.collect::<Vec<_>>().join(",\n"),
-        opacity.collect::<Vec<_>>().join(",\n"),
+        opacity,
         length.unwrap_or_default(),
         function
             .gradient_transfer
             .as_ref()
             .map(gradient_transfer_to_json)
             .unwrap_or_default(),
+        medium.map(medium_to_json).unwrap_or_default(),
     )
 }
 
@@ -252,4 +303,35 @@ struct Keys {
     widgets: Option<Value>,
     #[serde(default)]
     preintegrated: Option<Value>,
+    #[serde(default)]
+    extinction: Option<Value>,
+    #[serde(default)]
+    albedo: Option<Value>,
+    #[serde(default)]
+    emission: Option<Value>,
+    #[serde(default)]
+    phase: Option<Value>,
+}
+
+impl Keys {
+    /// Extinction is instead of opacity, and matter that scatters is one of the value alone.
+    fn check_beside_medium(&self) -> Result<(), FileProblem> {
+        let medium = [&self.extinction, &self.albedo, &self.emission, &self.phase];
+        let has_medium = medium.iter().any(|key| key.is_some());
+        let wanted = "no such key beside `extinction`, `albedo`, `emission` and `phase`";
+        for (key, found) in [
+            ("gradient_opacity", &self.gradient_opacity),
+            ("widgets", &self.widgets),
+        ] {
+            if let (Some(found), true) = (found, has_medium) {
+                return Err(wrong(key, wanted, found));
+            }
+        }
+        match (&self.opacity, &self.extinction) {
+            (Some(found), Some(_)) => {
+                Err(wrong("opacity", "no such key beside `extinction`", found))
+            }
+            _ => Ok(()),
+        }
+    }
 }

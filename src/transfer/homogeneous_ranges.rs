@@ -264,6 +264,7 @@ mod tests {
                 reference_length: None,
                 interpolation: [Interpolation::Linear, Interpolation::Step][nth % 2],
                 gradient_transfer: None,
+                medium: None,
             };
             let space = ColorSpace::Linear;
             let alike = HomogeneousRanges::new(&function, 1.5, space, tolerance);

@@ -148,6 +148,7 @@ impl LabelTable {
             reference_length: own.or(Some(diagonal / 512.0)),
             interpolation: Interpolation::Step,
             gradient_transfer: None,
+            medium: None,
         }
     }
 }

@@ -25,6 +25,14 @@ pub enum Absorption {
     },
     /// Opacity itself, 1 included, for modes that classify one value a ray.
     Opacity,
+    /// Extinction per world length of matter that scatters light, times `density`: what a function says of it, or its
+    /// opacity. Colours are albedos.
+    Medium {
+        /// World length that opacities are for.
+        reference_length: f64,
+        /// What extinctions are multiplied by.
+        density: f64,
+    },
 }
 
 impl Absorption {
@@ -35,7 +43,47 @@ impl Absorption {
                 extinction(opacity, N::from_f64(reference_length))
             }
             Self::Opacity => opacity,
+            Self::Medium {
+                reference_length,
+                density,
+            } => extinction(opacity, N::from_f64(reference_length / density)),
         }
+    }
+
+    /// The length that opacities are for, so much less of denser matter; 1 where there is none.
+    pub fn reference_length(self) -> f64 {
+        match self {
+            Self::Extinction { reference_length } => reference_length,
+            Self::Opacity => 1.0,
+            Self::Medium {
+                reference_length,
+                density,
+            } => reference_length / density,
+        }
+    }
+
+    /// Colour as it is blended in `space`, and the fourth number, of a function at a value.
+    pub(super) fn classified(
+        self,
+        function: &TransferFunction,
+        value: f64,
+        space: ColorSpace,
+    ) -> [f64; 4] {
+        let ([r, g, b], fourth) = match self {
+            Self::Medium {
+                reference_length,
+                density,
+            } => {
+                let extinctions = function.extinctions(value, reference_length);
+                let mean = extinctions.iter().sum::<f64>() / 3.0;
+                (function.albedo(value), density * mean)
+            }
+            Self::Extinction { .. } | Self::Opacity => {
+                let opacity = function.opacity(value);
+                (function.color(value, space), self.of(opacity))
+            }
+        };
+        [r, g, b, fourth]
     }
 }
 
@@ -80,7 +128,7 @@ pub fn opacity_over<N: Real>(extinction: N, length: N) -> N {
 }
 
 /// What stands at `value`; all zeros without points.
-fn between<const C: usize>(
+pub(super) fn between<const C: usize>(
     points: impl Iterator<Item = (f64, [f64; C])>,
     interpolation: Interpolation,
     value: f64,

@@ -92,6 +92,7 @@ impl TransferFunction {
             reference_length,
             interpolation: Interpolation::Linear,
             gradient_transfer: None,
+            medium: None,
         };
         let mut before: Option<Mixture> = None;
         for &value in &corners {

@@ -21,6 +21,8 @@ mod file;
 #[cfg(feature = "json")]
 mod file_images;
 #[cfg(feature = "json")]
+mod file_medium;
+#[cfg(feature = "json")]
 mod file_widgets;
 mod gradient_transfer;
 mod homogeneous_ranges;
@@ -32,6 +34,7 @@ mod law;
 mod levels;
 mod materials;
 mod meaning;
+mod medium;
 mod parts;
 mod points;
 mod preset;
@@ -67,8 +70,9 @@ pub use law::{Absorption, MAX_OPACITY, extinction, opacity_over};
 pub use levels::{SURFACE_COLORS, Surface, surfaces};
 pub use materials::{Material, TooMuch};
 pub use meaning::{MEANINGS, Meaning, Scale as MeaningScale};
+pub use medium::{MediumPoint, MediumTransfer, Phase};
 #[doc(hidden)]
-pub use points::{Points, classify_by_points};
+pub use points::{Points, classify_by_points, emission_by_points, extinctions_by_points};
 pub use preset::Preset;
 pub use quantity::Quantity;
 #[doc(hidden)]
@@ -96,6 +100,8 @@ pub struct TransferFunction {
     pub interpolation: Interpolation,
     /// What the gradient makes of it; `None`: nothing.
     pub gradient_transfer: Option<GradientTransfer>,
+    /// What techniques that scatter light take in place of colour and opacity; `None`: nothing else.
+    pub medium: Option<Box<MediumTransfer>>,
 }
 
 /// sRGB colour at a value.

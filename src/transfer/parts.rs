@@ -1,12 +1,15 @@
 //! Colour of one function, opacity of another.
 
-use super::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
+use super::{
+    ColorPoint, Interpolation, MediumPoint, MediumTransfer, OpacityPoint, TransferFunction,
+};
 
 impl TransferFunction {
     /// This function with the colours of `other`.
     pub fn with_color_of(&self, other: &Self) -> Self {
         let (own, other) = alike(self, other);
         Self {
+            medium: own.medium_of_colors(&other),
             color: other.color,
             ..own
         }
@@ -17,6 +20,7 @@ impl TransferFunction {
     pub fn with_opacity_of(&self, other: &Self) -> Self {
         let (own, other) = alike(self, other);
         Self {
+            medium: other.medium_of_colors(&own),
             color: own.color,
             ..other
         }
@@ -35,6 +39,20 @@ impl TransferFunction {
             opacity: steps(&self.opacity, |left, right| OpacityPoint {
                 value: right.value,
                 ..*left
+            }),
+            medium: self.medium.as_ref().map(|medium| {
+                let by_lines = |points: &[MediumPoint]| {
+                    steps(points, |left, right| MediumPoint {
+                        value: right.value,
+                        ..*left
+                    })
+                };
+                Box::new(MediumTransfer {
+                    extinction: by_lines(&medium.extinction),
+                    albedo: by_lines(&medium.albedo),
+                    emission: by_lines(&medium.emission),
+                    phase: medium.phase,
+                })
             }),
             interpolation: Interpolation::Linear,
             ..self.clone()

@@ -201,6 +201,7 @@ fn steep(summary: &ValueSummary) -> TransferFunction {
     let share = [(0.05, 0.0), (0.4, 1.0)];
     let share = share.map(|(value, opacity)| OpacityPoint { value, opacity });
     TransferFunction {
+        medium: None,
         gradient_transfer: Some(GradientTransfer {
             share: share.into(),
             ..GradientTransfer::default()
@@ -258,6 +259,7 @@ pub(super) fn spread(
         reference_length: reference_length(summary),
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     }
 }
 

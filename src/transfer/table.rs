@@ -13,7 +13,7 @@
 //! keeps opacity and sRGB numbers within 1/4096, the rounding of `value - first` in f32 (2^-6 of a cell at
 //! most) counted in. Only the entry that holds a jump between multiples of w is off by more.
 
-use super::{Absorption, ColorPoint, Interpolation, OpacityPoint, TransferFunction};
+use super::{Absorption, ColorPoint, Interpolation, MediumPoint, OpacityPoint, TransferFunction};
 use crate::color::ColorSpace;
 use crate::real::Real;
 
@@ -77,7 +77,9 @@ impl Cut {
         let values = || {
             let color = function.color.iter().map(|p| p.value);
             let opacity = function.opacity.iter().map(|p| p.value);
-            let finite = color.chain(opacity).filter(|value| value.is_finite());
+            let albedo = albedo(function).iter().map(|p| p.value);
+            let all = color.chain(opacity).chain(albedo);
+            let finite = all.filter(|value| value.is_finite());
             finite.map(|value| value.clamp(-limit, limit))
         };
         let start = values().reduce(f64::min).unwrap_or(0.0);
@@ -124,8 +126,9 @@ impl Table {
         } = Cut::new(function);
         let entries = (0..count).map(|i| {
             let value = first + (i as f64 + 0.5) * width;
-            let [r, g, b] = function.color(value, space);
-            [r, g, b, absorption.of(function.opacity(value))].map(|x| x as f32)
+            absorption
+                .classified(function, value, space)
+                .map(|x| x as f32)
         });
         Self {
             entries: entries.collect(),
@@ -144,15 +147,23 @@ pub fn classify_by_table<N: Real>(table: &Table, value: N) -> [N; 4] {
     table.entries[(cell.max(0.0) as usize).min(last)].map(n)
 }
 
+/// Of a medium, where its keys say it.
+fn albedo(function: &TransferFunction) -> &[MediumPoint] {
+    let medium = function.medium.as_ref();
+    medium.map_or(&[], |medium| &medium.albedo)
+}
+
 /// Where the specification jumps.
 fn jumps(function: &TransferFunction) -> Vec<f64> {
     let step = function.interpolation == Interpolation::Step;
     let of = |pair: [f64; 2]| (step || pair[0] == pair[1]).then_some(pair[1]);
     let color = function.color.windows(2);
     let opacity = function.opacity.windows(2);
+    let albedo = albedo(function).windows(2);
     color
         .filter_map(|p| of([p[0].value, p[1].value]))
         .chain(opacity.filter_map(|p| of([p[0].value, p[1].value])))
+        .chain(albedo.filter_map(|p| of([p[0].value, p[1].value])))
         .collect()
 }
 
@@ -168,7 +179,13 @@ fn steepest(function: &TransferFunction) -> f64 {
     let opacity =
         |p: &[OpacityPoint]| ((p[1].opacity - p[0].opacity).abs(), p[1].value - p[0].value);
     let color = function.color.windows(2).map(color);
-    let all = color.chain(function.opacity.windows(2).map(opacity));
+    let albedo = |p: &[MediumPoint]| {
+        let rise = (0..3).map(|c| (p[1].linear[c] - p[0].linear[c]).abs());
+        (rise.fold(0.0, f64::max), p[1].value - p[0].value)
+    };
+    let albedo = self::albedo(function).windows(2).map(albedo);
+    let opacity = function.opacity.windows(2).map(opacity);
+    let all = color.chain(opacity).chain(albedo);
     all.filter(|&(_, run)| run > 0.0)
         .map(|(rise, run)| rise / run)
         .fold(0.0, f64::max)

@@ -269,6 +269,7 @@ mod tests {
             reference_length: None,
             interpolation,
             gradient_transfer: None,
+            medium: None,
         }
     }
 
@@ -333,6 +334,7 @@ mod tests {
             second: None,
         };
         let of = |opacity| TransferFunction {
+            medium: None,
             gradient_transfer: Some(GradientTransfer {
                 widgets: vec![contour(opacity)],
                 ..GradientTransfer::default()

@@ -81,6 +81,7 @@ impl Window {
             reference_length: None,
             interpolation: Interpolation::Linear,
             gradient_transfer: None,
+            medium: None,
         }
     }
 }
@@ -95,6 +96,8 @@ impl TransferFunction {
         for point in &mut placed.opacity {
             point.value = window.at(point.value);
         }
+        let medium = placed.medium.map(|m| m.moved(|v| window.at(v)));
+        placed.medium = medium.map(Box::new);
         let gradient_transfer = self.gradient_transfer.as_ref();
         placed.gradient_transfer = gradient_transfer
             .map(|gradient_transfer| gradient_transfer.moved(|v| window.at(v), window.length()));
@@ -107,7 +110,9 @@ impl TransferFunction {
     pub fn spread_over(&self, window: Window) -> Self {
         let values = || {
             let color = self.color.iter().map(|p| p.value);
-            color.chain(self.opacity.iter().map(|p| p.value))
+            let medium = self.medium.iter().flat_map(|medium| medium.values());
+            let opacity = self.opacity.iter().map(|p| p.value);
+            color.chain(opacity).chain(medium)
         };
         let first = values().fold(f64::INFINITY, f64::min);
         let last = values().fold(f64::NEG_INFINITY, f64::max);
@@ -125,6 +130,8 @@ impl TransferFunction {
         for point in &mut spread.opacity {
             point.value = moved(point.value);
         }
+        let medium = spread.medium.map(|medium| medium.moved(moved));
+        spread.medium = medium.map(Box::new);
         let slope = if last > first {
             window.length() / (last - first)
         } else {

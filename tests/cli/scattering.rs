@@ -118,3 +118,49 @@ fn what_does_not_go_with_it_is_refused_by_name() {
         ran.assert_refused(2, &[said]);
     }
 }
+
+/// Keys of a function's file that say what matter does to light.
+#[test]
+fn keys_of_a_medium_are_drawn_by_what_scatters_and_named_elsewhere() {
+    let folder = Folder::new();
+    let tf = |extinction: &str| {
+        format!(
+            "{{\"stratavox_transfer_function\":1,\"color\":[[0,0.5,0.5,0.5]],\"extinction\":{extinction},\
+             \"albedo\":[[0,0.9,0.5,0.2]],\"emission\":[[0,0,0,0],[1000,0.01,0,0]],\"phase\":{{\"g\":0.7}}}}"
+        )
+    };
+    folder.file("grey.json", tf("[[0,0],[1000,0.2]]"));
+    folder.file("three.json", tf("[[0,0,0,0],[1000,0.2,0.1,0.05]]"));
+    let read = |name: &str| fs::read(folder.path(name)).expect("a picture");
+    let run = |words: &str| folder.run(&format!("{SMALL} {words}"));
+    let draw = |words: &str| {
+        let ran = run(words);
+        ran.assert_done();
+        assert!(
+            !ran.err.contains("transfer function are for"),
+            "{}",
+            ran.err
+        );
+        read("a.png")
+    };
+    let paths = "--technique pathtrace --spp 2 -o a.png";
+    let grey = draw(&format!("--tf grey.json {paths}"));
+    assert!(grey != draw(&format!("--tf three.json {paths}")));
+    // A word wins over the file.
+    assert!(grey == draw(&format!("--tf grey.json --phase hg:0.7 {paths}")));
+    assert!(grey != draw(&format!("--tf grey.json --phase isotropic {paths}")));
+    let once = draw("--tf grey.json --scattering single -o a.png");
+    assert!(once == draw("--tf grey.json --scattering single -o a.png --save-scene s.json"));
+    folder.run("render --scene s.json -o b.png").assert_done();
+    assert!(once == read("b.png"));
+    let refused = run("--tf three.json --scattering single -o a.png");
+    assert!(
+        !refused.err.is_empty() && refused.err.contains("--technique pathtrace"),
+        "{refused:?}"
+    );
+    assert!(refused.err.contains("three colours"), "{refused:?}");
+    let ran = run("--tf grey.json -o a.png");
+    ran.assert_done();
+    let note = "extinction, albedo, emission, phase of the transfer function are for --technique pathtrace and --scattering single";
+    assert!(ran.err.contains(note), "{}", ran.err);
+}

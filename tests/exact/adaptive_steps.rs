@@ -45,6 +45,7 @@ fn terraces(numbers: &mut Numbers) -> TransferFunction {
         reference_length: None,
         interpolation: [Interpolation::Linear, Interpolation::Step][numbers.below(2)],
         gradient_transfer: None,
+        medium: None,
     };
     while value < 110.0 {
         if numbers.next() < 0.6 {
@@ -185,6 +186,7 @@ fn between(ends: [(f64, f64, [f64; 3]); 2], reference_length: f64) -> TransferFu
         reference_length: Some(reference_length),
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     }
 }
 

@@ -37,6 +37,7 @@ fn fog(srgb: [f64; 3], extinction: f64) -> TransferFunction {
         reference_length: Some(1.0),
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     }
 }
 
@@ -136,6 +137,7 @@ fn opaque_names() -> TransferFunction {
         reference_length: None,
         interpolation: Interpolation::Step,
         gradient_transfer: None,
+        medium: None,
     }
 }
 
@@ -271,6 +273,7 @@ fn a_cut_face_has_the_colour_of_what_lies_there_and_its_depth() {
         reference_length: None,
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     };
     let mut renderer = Renderer::new(device(), &volume).unwrap();
     for preintegrated in [false, true] {

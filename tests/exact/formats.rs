@@ -62,6 +62,7 @@ fn drawn(device: &mut Headless, format: vk::Format, order: Order, slices: u32) -
         reference_length: Some(VOXELS.into()),
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     };
     let gpu = Arc::clone(device.gpu());
     let voxels = uploaded(device, &volume);

@@ -38,6 +38,7 @@ fn fog() -> (Volume, TransferFunction) {
         reference_length: Some(1.0),
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     };
     let volume = volume_of([SIDE as u32; 3], DAffine3::IDENTITY, |_| 1.0);
     (volume, function)

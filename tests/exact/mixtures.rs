@@ -37,6 +37,7 @@ fn fog(srgb: [f64; 3], extinction: f64) -> TransferFunction {
         reference_length: Some(1.0),
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     }
 }
 
@@ -95,6 +96,7 @@ fn label_colors() -> TransferFunction {
         reference_length: None,
         interpolation: Interpolation::Step,
         gradient_transfer: None,
+        medium: None,
     }
 }
 

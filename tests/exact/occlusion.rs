@@ -394,6 +394,7 @@ fn functions_of_the_gradient_cast_what_they_draw() {
             value: 0.0,
             opacity: 0.0,
         }],
+        medium: None,
         gradient_transfer: Some(GradientTransfer {
             steepest: Some(1.0),
             share: Vec::new(),
@@ -457,6 +458,7 @@ fn white() -> TransferFunction {
         reference_length: None,
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     }
 }
 

@@ -41,6 +41,7 @@ fn function(opacity: &[(f64, f64)], interpolation: Interpolation) -> TransferFun
         reference_length: Some(1.0),
         interpolation,
         gradient_transfer: None,
+        medium: None,
     }
 }
 

@@ -188,6 +188,7 @@ fn shell() -> TransferFunction {
         reference_length: Some(1.0),
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     }
 }
 

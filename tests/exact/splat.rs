@@ -124,6 +124,7 @@ fn function() -> TransferFunction {
         reference_length: Some(1.0),
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     }
 }
 

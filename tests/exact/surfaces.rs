@@ -403,6 +403,7 @@ fn painted_ball() -> (Volume, Volume, TransferFunction) {
         reference_length: None,
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     };
     (ball, other, function)
 }

@@ -48,6 +48,7 @@ fn only(gradient_transfer: GradientTransfer) -> TransferFunction {
         opacity: points(&[(0.0, 0.0)]),
         reference_length: None,
         interpolation: Interpolation::Linear,
+        medium: None,
         gradient_transfer: Some(gradient_transfer),
     }
 }
@@ -308,6 +309,7 @@ fn one_of_each() -> TransferFunction {
         second: None,
     });
     TransferFunction {
+        medium: None,
         gradient_transfer: Some(GradientTransfer {
             steepest: Some(0.3),
             share: points(&[(0.1, 0.2), (0.4, 1.0), (0.4, 0.5), (0.9, 0.0)]),
@@ -337,6 +339,7 @@ fn every_technique_filter_and_light_draws_widgets_as_its_reference_does() {
     let function = one_of_each();
     let flat = TransferFunction {
         gradient_transfer: None,
+        medium: None,
         ..function.clone()
     };
     for holes in [false, true] {

@@ -21,6 +21,7 @@ fn function(points: &[[f64; 2]]) -> TransferFunction {
         reference_length: None,
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     }
 }
 

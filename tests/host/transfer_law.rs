@@ -22,6 +22,7 @@ fn opacity_points(points: &[(f64, f64)], interpolation: Interpolation) -> Transf
         reference_length: None,
         interpolation,
         gradient_transfer: None,
+        medium: None,
     }
 }
 

@@ -308,6 +308,7 @@ fn colour_of_one_file_and_opacity_of_another_keep_their_own_laws() {
         reference_length: Some(3.0),
         interpolation: Interpolation::Step,
         gradient_transfer: None,
+        medium: None,
     };
     let lines = all();
     for (both, own_length) in [

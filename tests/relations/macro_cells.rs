@@ -102,6 +102,7 @@ fn function() -> TransferFunction {
         reference_length: None,
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     }
 }
 

@@ -139,6 +139,7 @@ fn of_a_ball_in_empty_space_few_samples_are_taken() {
         reference_length: None,
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     };
     let camera = oblique_camera(&volume.grid(), projections(&volume.grid())[0]);
     let settings = Settings::default();
@@ -196,6 +197,7 @@ fn a_voxel_at_the_border_of_a_cell_is_seen_from_the_cells_beside() {
         reference_length: None,
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     };
     let camera = oblique_camera(&volume.grid(), projections(&volume.grid())[0]);
     let mut renderer = Renderer::new(device(), &volume).expect("a renderer");
@@ -260,6 +262,7 @@ fn tiles_that_meet_nothing_are_left_out_and_no_others() {
         reference_length: None,
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     };
     for caps in [
         Caps::UNLIMITED,

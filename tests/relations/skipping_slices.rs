@@ -138,6 +138,7 @@ fn white(points: &[(f64, f64)]) -> TransferFunction {
         reference_length: None,
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     }
 }
 

@@ -62,6 +62,7 @@ fn contours_and_slabs_are_left_out_of_bricks_too() {
     };
     let contours = TransferFunction {
         opacity: Vec::new(),
+        medium: None,
         gradient_transfer: Some(GradientTransfer {
             steepest: Some(0.3 * (high - low)),
             share: Vec::new(),

@@ -221,5 +221,6 @@ fn transfer_of(matter: &Matter) -> TransferFunction {
         reference_length: Some(1.0),
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     }
 }

@@ -96,6 +96,7 @@ pub fn hills(numbers: &mut Numbers, range: [f64; 2]) -> TransferFunction {
             _ => Interpolation::Step,
         },
         gradient_transfer: None,
+        medium: None,
     }
 }
 

@@ -57,6 +57,7 @@ pub fn function(random: &mut Random) -> TransferFunction {
         reference_length: None,
         interpolation,
         gradient_transfer: None,
+        medium: None,
     }
 }
 

@@ -54,6 +54,7 @@ pub fn mixed(a: &TransferFunction, b: &TransferFunction, s: f64, spacing: f64) -
         reference_length,
         interpolation: a.interpolation,
         gradient_transfer: None,
+        medium: None,
     }
 }
 
@@ -154,6 +155,12 @@ pub fn of_key(
 
 /// Between two functions of gradients there is none.
 fn of_value(function: TransferFunction) -> Result<TransferFunction, String> {
+    if function.medium.is_some() {
+        return Err(
+            "extinction, albedo, emission and phase have no keys: --tf gives them to the whole film"
+                .to_owned(),
+        );
+    }
     if function.uses_gradient() {
         return Err(
             "widgets and gradient opacity have no keys: --tf gives them to the whole film"
@@ -183,6 +190,7 @@ mod tests {
             reference_length: None,
             interpolation: Interpolation::Linear,
             gradient_transfer: None,
+            medium: None,
         }
     }
 

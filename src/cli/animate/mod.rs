@@ -287,7 +287,7 @@ impl Animate {
         let mut devices = devices;
         let scene = &framing::framed(plan, &content, &grid, &mut devices, progress)?;
         for note in scene.idle() {
-            progress.note(note);
+            progress.note(&note);
         }
         let annotation = annotation(scene, header, shots[0].settings.mode)?;
         let note = annotation.as_ref().and_then(Annotation::note);

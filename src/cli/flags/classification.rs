@@ -7,8 +7,8 @@ use super::{
 use crate::{
     technique::Mode,
     transfer::{
-        Classified, Context, Interpolation, Preset, TransferFunction, ValueSummary, Window,
-        automatic, automatic_in,
+        Classified, Context, Interpolation, MediumTransfer, Preset, TransferFunction, ValueSummary,
+        Window, automatic, automatic_in,
     },
     volume::{Volume, steepest_gradient},
 };
@@ -330,6 +330,19 @@ impl ClassificationFlags {
         function_in(value).map(Some)
     }
 
+    /// What the files of these words say of matter that scatters light; `None` too where they are wrong.
+    pub fn medium(&self) -> Option<Box<MediumTransfer>> {
+        let part = |part: &Option<Inlined>| self.part(part).ok().flatten();
+        let mut function = self.function_of_file().ok().flatten().unwrap_or(NOTHING);
+        if let Some(color) = part(&self.color_function) {
+            function = function.with_color_of(&color);
+        }
+        if let Some(opacity) = part(&self.opacity_function) {
+            function = function.with_opacity_of(&opacity);
+        }
+        function.medium
+    }
+
     /// The function of a file that gives a part.
     fn part(&self, part: &Option<Inlined>) -> Result<Option<TransferFunction>, Error> {
         let part = part
@@ -338,6 +351,16 @@ impl ClassificationFlags {
         part.transpose()
     }
 }
+
+/// Says nothing.
+const NOTHING: TransferFunction = TransferFunction {
+    color: Vec::new(),
+    opacity: Vec::new(),
+    reference_length: None,
+    interpolation: Interpolation::Linear,
+    gradient_transfer: None,
+    medium: None,
+};
 
 /// What is read of a file whose widgets alone have colours: black everywhere.
 fn has_no_color(function: &TransferFunction) -> bool {

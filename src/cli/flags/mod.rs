@@ -86,6 +86,7 @@ use super::map::MapFlags;
 use crate::cli::renderer::REFERENCE;
 use crate::picture::{ColorSpace, Tone};
 use crate::technique::Settings;
+use crate::technique::pathtrace::{PathTracing, Phase};
 use clap::Args;
 use serde::{Deserialize, Serialize};
 
@@ -245,7 +246,10 @@ impl SceneFlags {
             gradient_filter: self.gradient.filter(),
             gradient_storage: self.gradient.keep(),
             dim: self.labels.dim()?,
-            path: self.path.path(&self.light, self.picture.shows_sky())?,
+            path: PathTracing {
+                phase: self.phase(),
+                ..self.path.path(&self.light, self.picture.shows_sky())?
+            },
             ..settings
         };
         let settings = self.path.scattered(&self.light, settings)?;
@@ -262,6 +266,13 @@ impl SceneFlags {
             Ok(()) => slabs,
             Err(_) => settings,
         })
+    }
+
+    /// That of a word, else of the function's file.
+    fn phase(&self) -> Phase {
+        let of_file = || self.classification.medium().and_then(|medium| medium.phase);
+        let word = self.path.phase.map(|word| word.0);
+        word.or_else(of_file).unwrap_or_default()
     }
 
     /// False where nothing in the picture depends on a gradient; a function that is read may make something of it.
@@ -281,7 +292,7 @@ impl SceneFlags {
     }
 
     /// Flags that change nothing under the others, a sentence each.
-    pub fn idle(&self) -> Vec<&'static str> {
+    pub fn idle(&self) -> Vec<String> {
         let mode = self.sampling.mode.unwrap_or_default();
         let of_light = match self.traces_paths() {
             true => Vec::new(),
@@ -303,6 +314,18 @@ impl SceneFlags {
         if self.camera.frame.is_some() && self.section.section.is_some() {
             notes.push("--frame has no effect with --section, which shows all of its plane");
         }
-        notes
+        let notes = notes.into_iter().map(str::to_owned);
+        notes.chain(self.idle_medium()).collect()
+    }
+
+    /// Keys of the function that are for pictures of light that scatters.
+    fn idle_medium(&self) -> Option<String> {
+        if self.traces_paths() || self.path.scatters_once() {
+            return None;
+        }
+        let keys = self.classification.medium()?.keys().join(", ");
+        Some(format!(
+            "{keys} of the transfer function are for --technique pathtrace and --scattering single: drawn are its colour and opacity"
+        ))
     }
 }

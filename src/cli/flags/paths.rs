@@ -52,7 +52,7 @@ pub struct PathFlags {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub albedo: Option<f64>,
     /// Where matter scatters light to: isotropic, rayleigh, hg:G with the mean cosine G (over 0: forward), or hg:F,G1,G2, two
-    /// lobes of which the first has the part F [default: isotropic]
+    /// lobes of which the first has the part F [default: that of the --tf file, else isotropic]
     #[arg(long, value_name = "PHASE", allow_hyphen_values = true, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub phase: Option<PhaseWord>,
@@ -103,7 +103,7 @@ const MOST_PATHS: i64 = 1 << 20;
 const MOST_UNASKED: u32 = 4096;
 
 impl PathFlags {
-    /// What paths are, with the lights that others name.
+    /// What paths are, with the lights that others name; without [`Self::phase`], which a function may have too.
     pub fn path(&self, light: &LightFlags, shows_sky: bool) -> Result<PathTracing, Error> {
         let default = PathTracing::default();
         let mut lights: Vec<Light> = light.light.iter().map(|word| word.light()).collect();
@@ -127,7 +127,6 @@ impl PathFlags {
             bounces: self.bounces,
             density: self.density_scale.unwrap_or(default.density),
             albedo: self.albedo.unwrap_or(default.albedo),
-            phase: self.phase.map_or(default.phase, |word| word.0),
             lights,
             lamps: light.lamps(),
             light_size_degrees: light.light_size.unwrap_or(default.light_size_degrees),

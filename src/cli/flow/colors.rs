@@ -57,6 +57,7 @@ impl LineColors {
             reference_length: None,
             interpolation: Interpolation::Linear,
             gradient_transfer: None,
+            medium: None,
         }
     }
 

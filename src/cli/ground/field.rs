@@ -163,6 +163,7 @@ impl Field {
                 reference_length: None,
                 interpolation: Interpolation::Linear,
                 gradient_transfer: None,
+                medium: None,
             },
             caption: self.caption.clone(),
             unit: self.unit.clone(),

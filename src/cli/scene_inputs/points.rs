@@ -205,5 +205,6 @@ fn alike([low, high]: [f64; 2]) -> TransferFunction {
         reference_length: None,
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     }
 }

@@ -256,7 +256,7 @@ impl Batch<'_> {
             let view = wanted.view.map(|view| format!("--view {}: ", view.name()));
             let view = view.unwrap_or_default();
             let empty = reason.map(|reason| format!("{view}the picture is empty: {reason}"));
-            let idle = scene.idle().into_iter().map(str::to_owned);
+            let idle = scene.idle().into_iter();
             let notes = idle.chain(empty).chain(annotation_note.clone());
             let framed = framed.iter().map(|note| format!("{view}{note}"));
             let (background, annotation) = (scene.picture.background(), annotation.as_ref());

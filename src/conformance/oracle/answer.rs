@@ -83,6 +83,7 @@ impl Classes {
             reference_length: Some(1.0),
             interpolation: Interpolation::Linear,
             gradient_transfer: None,
+            medium: None,
         }
     }
 

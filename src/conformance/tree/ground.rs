@@ -321,6 +321,7 @@ pub fn ramps() -> TransferFunction {
         reference_length: None,
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     }
 }
 

@@ -190,6 +190,7 @@ fn draw_on_faces(bed: &mut TestBed, towards: DVec3) -> Result<Measurement, Stop>
         reference_length: Some(1.0),
         interpolation: Interpolation::Step,
         gradient_transfer: None,
+        medium: None,
     };
     let numbers = Numbers::of(&shot, |_| 1.0);
     let found = bed.render(&shot.scene(&numbers.volume, Some(&function)), &[])?;

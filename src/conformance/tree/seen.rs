@@ -391,6 +391,7 @@ fn parts(shot: &PictureCase, look: Look) -> Vec<Part> {
                 widgets: vec![widget],
             };
             let function = TransferFunction {
+                medium: None,
                 gradient_transfer: Some(gradient_transfer),
                 ..function.clone()
             };

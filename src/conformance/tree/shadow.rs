@@ -87,6 +87,7 @@ fn draw(bed: &mut TestBed, towards: DVec3, per_voxel: u32) -> Result<Measurement
         reference_length: Some(1.0),
         interpolation: Interpolation::Step,
         gradient_transfer: None,
+        medium: None,
     };
     let numbers = Numbers::of(&shot, |_| 1.0);
     let found = bed.render(&shot.scene(&numbers.volume, Some(&function)), &[])?;

@@ -93,6 +93,7 @@ fn draw(
         reference_length: Some(1.0),
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     };
     let absorption = Absorption::Extinction {
         reference_length: 1.0,

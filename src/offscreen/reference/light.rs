@@ -6,7 +6,7 @@ use crate::real::Real;
 use crate::resident::TextureLayout;
 use crate::scene::Scene;
 use crate::technique::{Error, Filter, InPixel, LightField};
-use crate::transfer::{Absorption, Points};
+use crate::transfer::Points;
 use crate::volume::{Grid, Volume};
 
 /// What comes through to the nodes of the light grid; `None` where the picture does not ask. `read` is what is
@@ -69,8 +69,7 @@ fn matter_of<'a, R: Real>(
     };
     let by_points = |function: Option<_>| {
         let function = function.ok_or(Error::NoTransferFunction)?;
-        let reference_length = scene.length_of(function);
-        let absorption = Absorption::Extinction { reference_length };
+        let absorption = scene.absorption(function);
         let points = Points::new(function, absorption, scene.settings.color_space);
         Ok(Classifier::Points(points))
     };

@@ -7,9 +7,10 @@ use crate::scene::Beside;
 use crate::shaders::Frame;
 use crate::technique::gradient::gradient_of;
 use crate::technique::gradient_taps::weighted_gradient;
+use crate::technique::reference::Samples;
 use crate::technique::second_derivative::second_derivative_of;
 use crate::technique::shading::{Lamps, shade};
-use crate::technique::{Filter, Operator, scattered};
+use crate::technique::{Filter, Operator, scattered, shining};
 use crate::transfer::{GradientMagnitude, PackedWidgets, classify_by_gradient};
 use crate::volume::Volume;
 
@@ -50,7 +51,7 @@ impl<R: Real> ReferenceRays<'_, R> {
             let value = look_from(volume, settings.filter, [0; 3])?;
             let material = self.classified(0, value);
             if settings.single_scattering.is_some() {
-                return Some(self.scattered(material, p, ray_direction));
+                return Some(self.scattered(material, value, p, ray_direction));
             }
             let tap = |step| look_from(volume, settings.filter, step);
             let Some(widgets) = &self.widgets else {
@@ -65,8 +66,8 @@ impl<R: Real> ReferenceRays<'_, R> {
         self.mixed_channels(look_from, place)
     }
 
-    /// A material at `p` with the light that it scatters to the eye: none along no direction.
-    fn scattered(&self, material: [R; 4], p: [R; 3], ray_direction: [R; 3]) -> [R; 4] {
+    /// The material of a value at `p` with the light that it scatters and sends to the eye: none along no direction.
+    fn scattered(&self, material: [R; 4], value: R, p: [R; 3], ray_direction: [R; 3]) -> [R; 4] {
         let [r, g, b, extinction] = material;
         if ray_direction == [R::from_f64(0.0); 3] {
             return material;
@@ -77,7 +78,7 @@ impl<R: Real> ReferenceRays<'_, R> {
         };
         let lamps = self.lamps(p, ray_direction);
         let [r, g, b] = scattered(&self.frame, [r, g, b], &lamps, extinction_at);
-        [r, g, b, extinction]
+        shining(&self.frame, [r, g, b, extinction], || self.emission(value))
     }
 
     /// A material at `p` with the light that falls on it: none along no direction, and without lamps all of it ambient.

@@ -8,7 +8,7 @@ use crate::shaders::Frame;
 use crate::technique::reference::{Samples, moved};
 use crate::technique::splat::ViewPoints;
 use crate::technique::{AlikeCells, Filter, Settings};
-use crate::transfer::classify_slab;
+use crate::transfer::{classify_slab, emission_by_points, extinctions_by_points};
 use crate::volume::Volume;
 use crate::volume::kernel::{convolved, convolved_in_slice};
 use crate::volume::sample::{linear, linear_in_slice, nearest};
@@ -97,6 +97,18 @@ impl<R: Real> Samples<R> for ReferenceRays<'_, R> {
 
     fn classify(&self, value: R) -> [R; 4] {
         self.classified(0, value)
+    }
+
+    fn extinctions(&self, value: R) -> [R; 3] {
+        match &self.medium {
+            Some(points) => extinctions_by_points(points, value),
+            None => [self.classify(value)[3]; 3],
+        }
+    }
+
+    fn emission(&self, value: R) -> [R; 3] {
+        let points = self.medium.as_ref();
+        points.map_or([R::from_f64(0.0); 3], |p| emission_by_points(p, value))
     }
 
     fn classify_slab(&self, [front, back]: [R; 2]) -> [R; 4] {

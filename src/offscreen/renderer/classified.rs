@@ -55,17 +55,19 @@ impl Renderer<'_> {
             space,
             is_preintegrated,
             density: scene.settings.density_of_rays(),
+            scatters: scene.settings.scatters(),
         };
         let (device, changes) = (&mut self.device, &mut self.changes);
         self.transfer.of(key, |_| {
-            let with_length = functions.iter().map(|&f| (f, scene.length_of(f)));
-            let with_length: Vec<_> = with_length.collect();
+            let absorbing = functions.iter().map(|&f| (f, scene.absorption(f)));
+            let absorbing: Vec<_> = absorbing.collect();
             let gpu = device.gpu();
-            let made = match with_length[..] {
-                [(function, length)] if is_preintegrated => {
+            let made = match functions[..] {
+                [function] if is_preintegrated => {
+                    let length = scene.length_of(function);
                     GpuTransfer::preintegrated(gpu, function, length, space)?
                 }
-                _ => GpuTransfer::several(gpu, &with_length, space)?,
+                _ => GpuTransfer::absorbing(gpu, &absorbing, space)?,
             };
             // SAFETY: recorded outside rendering; `run` waits, and `made` lives meanwhile.
             device.run(|cmd| unsafe { made.record_upload(cmd) })?;

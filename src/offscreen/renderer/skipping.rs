@@ -329,7 +329,12 @@ pub(super) fn wanted(scene: &Scene) -> Option<(Skippable, Halo)> {
         }
         (mix, _) => {
             let slope = scene.settings.slope(&scene.volume.grid());
-            scene.settings.skippable(mix, scene.transfer, range, slope)
+            let lit = scene
+                .transfer
+                .filter(|f| f.emits() && scene.settings.scatters());
+            let lit = lit.map(TransferFunction::with_emission_seen);
+            let function = lit.as_ref().or(scene.transfer);
+            scene.settings.skippable(mix, function, range, slope)
         }
     };
     let alike = scene.alike().filter(|_| scene.settings.skip);

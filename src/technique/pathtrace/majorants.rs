@@ -6,7 +6,7 @@
 //! ```
 
 use crate::shaders::{MAJORANT_BINS, MAJORANT_ROWS, MAJORANT_VECTORS};
-use crate::transfer::{Interpolation, TransferFunction};
+use crate::transfer::{Absorption, Interpolation, MediumPoint, TransferFunction};
 
 /// Values in bins, and the table of their maxima.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,18 +22,13 @@ pub(super) struct Majorants {
 const BINS: usize = MAJORANT_BINS as usize;
 
 impl Majorants {
-    /// Of a function, with extinctions by `extinction_of` its opacities.
-    pub fn new(function: &TransferFunction, extinction_of: impl Fn(f64) -> f64) -> Self {
-        let points = &function.opacity;
-        let [first, last] = match (points.first(), points.last()) {
-            (Some(first), Some(last)) => [first.value, last.value],
-            _ => [0.0; 2],
-        };
+    /// Of bins over a span of values, by the most between two values, both included. Beyond the span all is constant.
+    pub fn new([first, last]: [f64; 2], most_between: impl Fn([f64; 2]) -> f64) -> Self {
         let width = (last - first) / BINS as f64;
         let mut rows = vec![0.0_f32; 4 * MAJORANT_VECTORS as usize];
         for (i, bin) in rows.iter_mut().enumerate().take(BINS) {
             let ends = [i, i + 1].map(|k| first + k as f64 * width);
-            *bin = extinction_of(most_between(function, ends)) as f32;
+            *bin = most_between(ends) as f32;
         }
         for row in 1..MAJORANT_ROWS as usize {
             let half = 1 << (row - 1);
@@ -51,23 +46,73 @@ impl Majorants {
     }
 }
 
-/// The largest opacity between two values, both included.
-fn most_between(function: &TransferFunction, [low, high]: [f64; 2]) -> f64 {
-    let points = &function.opacity;
-    let inside = points.iter().filter(|p| (low..=high).contains(&p.value));
-    let at_ends = points.windows(2).flat_map(|pair| {
-        let [a, b] = [&pair[0], &pair[1]];
-        [low, high].map(|value| match value {
-            _ if value < a.value || value > b.value => 0.0,
-            _ if function.interpolation == Interpolation::Step => a.opacity,
-            _ if b.value > a.value => {
-                let part = (value - a.value) / (b.value - a.value);
-                a.opacity + part * (b.opacity - a.opacity)
-            }
-            _ => a.opacity.max(b.opacity),
-        })
-    });
-    inside.map(|p| p.opacity).chain(at_ends).fold(0.0, f64::max)
+/// An amount over values that grows with what stands at points, and is what it makes of that.
+pub(super) struct AmountPoints<'a> {
+    points: Vec<[f64; 2]>,
+    interpolation: Interpolation,
+    amount: Box<dyn Fn(f64) -> f64 + 'a>,
+}
+
+impl AmountPoints<'_> {
+    /// Extinction, of three colours the largest, and emission.
+    pub fn of(function: &TransferFunction, absorption: Absorption) -> [Self; 2] {
+        let most = |[a, b, c]: [f64; 3]| a.max(b).max(c);
+        let medium = function.medium.as_ref();
+        let extinction = medium.map_or(&[][..], |medium| &medium.extinction);
+        let emission = medium.map_or(&[][..], |medium| &medium.emission);
+        let points =
+            |list: &[MediumPoint]| list.iter().map(|p| [p.value, most(p.linear)]).collect();
+        let opacity = || function.opacity.iter().map(|p| [p.value, p.opacity]);
+        let interpolation = function.interpolation;
+        [
+            Self {
+                points: match extinction {
+                    [] => opacity().collect(),
+                    _ => points(extinction),
+                },
+                interpolation,
+                amount: match extinction {
+                    [] => Box::new(move |opacity| absorption.of(opacity)),
+                    _ => Box::new(|extinction| extinction),
+                },
+            },
+            Self {
+                points: points(emission),
+                interpolation,
+                amount: Box::new(|emission| emission),
+            },
+        ]
+    }
+
+    /// From the first value to the last, of another span too.
+    pub fn span(&self, other: Option<[f64; 2]>) -> Option<[f64; 2]> {
+        let (first, last) = (self.points.first(), self.points.last());
+        let own = first.zip(last).map(|(first, last)| [first[0], last[0]]);
+        match (own, other) {
+            (Some([a, b]), Some([c, d])) => Some([a.min(c), b.max(d)]),
+            (own, other) => own.or(other),
+        }
+    }
+
+    /// The most between two values, both included.
+    pub fn most_between(&self, [low, high]: [f64; 2]) -> f64 {
+        let inside = self.points.iter().filter(|p| (low..=high).contains(&p[0]));
+        let ends = self.points.first().into_iter().chain(self.points.last());
+        let beyond = ends.zip([|a, b| a > b, |a, b| a < b] as [fn(f64, f64) -> bool; 2]);
+        let beyond = beyond.filter(|(end, is_out)| is_out(end[0], low) || is_out(end[0], high));
+        let at_ends = self.points.windows(2).flat_map(|pair| {
+            let [[from, a], [to, b]] = [pair[0], pair[1]];
+            [low, high].map(|value| match value {
+                _ if value < from || value > to => 0.0,
+                _ if self.interpolation == Interpolation::Step => a,
+                _ if to > from => a + (value - from) / (to - from) * (b - a),
+                _ => a.max(b),
+            })
+        });
+        let inside = inside.map(|p| p[1]);
+        let most = inside.chain(beyond.map(|(end, _)| end[1])).chain(at_ends);
+        (self.amount)(most.fold(0.0, f64::max))
+    }
 }
 
 #[cfg(test)]
@@ -100,15 +145,19 @@ mod tests {
                 color: Vec::new(),
                 reference_length: None,
                 gradient_transfer: None,
+                medium: None,
             };
-            let table = Majorants::new(&function, |opacity| opacity);
+            let [amount, emission] = AmountPoints::of(&function, Absorption::Opacity);
+            assert_eq!(emission.span(None), None);
+            let span = amount.span(None).expect("points");
+            let table = Majorants::new(span, |ends| amount.most_between(ends));
             for low in 0..BINS {
                 for high in low..BINS {
                     let found = f64::from(most(&table, [low, high]));
                     let value = |i: usize| {
                         36.0 * (low as f64 + (high - low + 1) as f64 * i as f64 / 64.0) / 64.0
                     };
-                    let seen = (0..=64).map(|i| most_between(&function, [value(i); 2]));
+                    let seen = (0..=64).map(|i| amount.most_between([value(i); 2]));
                     let wanted = seen.fold(0.0, f64::max);
                     assert!(found >= wanted - 1e-6, "{low} {high}: {found} {wanted}");
                 }

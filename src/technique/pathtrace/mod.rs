@@ -22,7 +22,6 @@ mod surface;
 pub(crate) use denoise::denoised;
 pub(crate) use elementary::turn_of;
 pub use lamp::{Lamp, LampShape};
-pub use phase::Phase;
 pub(crate) use phase::phase_value;
 pub use sky::{SkyError, SkyPicture};
 
@@ -33,9 +32,10 @@ use crate::color::decode_srgb;
 use crate::gpu;
 use crate::resident::TextureLayout;
 use crate::shaders::{Frame, FrameFields, MAJORANT_BINS, MAJORANT_ROWS, MAX_LIGHTS};
-use crate::transfer::{TransferFunction, extinction};
+pub use crate::transfer::Phase;
+use crate::transfer::{Absorption, TransferFunction};
 use glam::DVec3;
-use majorants::Majorants;
+use majorants::{AmountPoints, Majorants};
 
 /// What paths are. Other techniques do not look at it.
 #[derive(Clone, Debug, PartialEq)]
@@ -183,8 +183,8 @@ const TURNS_OF_ROOT: u32 = 5;
 pub(crate) struct Medium<'a> {
     /// Its function.
     pub function: &'a TransferFunction,
-    /// World length that its opacities are for.
-    pub reference_length: f64,
+    /// How it takes light away.
+    pub absorption: Absorption,
     /// Whether voxels lack data.
     pub has_holes: bool,
     /// Whether its control points are searched.
@@ -194,6 +194,9 @@ pub(crate) struct Medium<'a> {
     /// The shortest side of a voxel, world.
     pub smallest_spacing: f64,
 }
+
+/// Light that matter sends out is found at tentative collisions: no farther apart than this on average, in voxels.
+const EMISSION_SPACINGS: f64 = 8.0;
 
 /// f32 rounds a table's entries and the products with them.
 const MAJORANT_SLACK: f64 = 1.0 + 1e-5;
@@ -212,19 +215,40 @@ impl PathTracing {
     pub(crate) fn fields_of(&self, medium: &Medium) -> MediumFields {
         let Medium {
             function,
-            reference_length,
+            absorption,
             has_holes,
             is_searched,
             value_range: [low, high],
             smallest_spacing,
         } = *medium;
+        let [extinction, emission] = AmountPoints::of(function, absorption);
+        let span = extinction.span(emission.span(None)).unwrap_or_default();
+        let majorants = Majorants::new(span, |ends| {
+            let most = MAJORANT_SLACK * self.density * extinction.most_between(ends);
+            match emission.most_between(ends) > 0.0 {
+                true => most.max(1.0 / (EMISSION_SPACINGS * smallest_spacing)),
+                false => most,
+            }
+        });
         // A search halves the points of colour and of opacity.
-        let points = (function.color.len() + function.opacity.len() + 1).ilog2() + 2;
+        let medium = function.medium.iter();
+        let medium = medium.map(|m| m.extinction.len() + m.albedo.len() + m.emission.len());
+        let points = function.color.len() + function.opacity.len() + medium.sum::<usize>();
+        let points = (points + 1).ilog2() + 2;
+        let is_colored = function
+            .medium
+            .as_ref()
+            .is_some_and(|m| m.has_colored_extinction());
         let sum = |parts: &[(bool, u32)]| -> u32 {
             let there = parts.iter().filter(|(is_there, _)| *is_there);
             there.map(|(_, turns)| turns).sum()
         };
-        let event = sum(&[(has_holes, TURNS_OF_MASK), (is_searched, 2 * points)]);
+        let event = sum(&[
+            (has_holes, TURNS_OF_MASK),
+            (is_searched, 2 * points),
+            (is_colored, points),
+            (function.emits(), points),
+        ]);
         let collision = sum(&[
             (self.surface > 0.0, TURNS_OF_TAPS),
             (has_holes && self.surface > 0.0, 6 * TURNS_OF_MASK),
@@ -232,9 +256,7 @@ impl PathTracing {
         ]);
         let range = high - low;
         MediumFields {
-            majorants: Majorants::new(function, |opacity| {
-                MAJORANT_SLACK * self.density * extinction(opacity, reference_length)
-            }),
+            majorants,
             turns: [event, collision],
             surface: match range > 0.0 {
                 true => (self.surface * smallest_spacing / range) as f32,

@@ -12,26 +12,8 @@
 
 use crate::real::Real;
 use crate::shaders::Frame;
+use crate::transfer::Phase;
 use std::f64::consts::PI;
-
-/// Where a medium scatters light to.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Phase {
-    /// To all sides alike.
-    #[default]
-    Isotropic,
-    /// As particles far smaller than the wavelength do.
-    Rayleigh,
-    /// Henyey & Greenstein's, with the mean cosine g, -0.99 to 0.99: positive forward, negative back.
-    HenyeyGreenstein(f64),
-    /// A part of `part` (0 to 1) by the first g, the rest by the second.
-    TwoLobes {
-        /// Of the first.
-        part: f64,
-        /// Mean cosines of both.
-        g: [f64; 2],
-    },
-}
 
 impl Phase {
     /// What the shader is told: f, g1, g2, and 1 for Rayleigh.

@@ -32,4 +32,24 @@ mod tests {
         let other = [0x3622_cd16, 0xf114_71d8, 0xe110_9b3f, 0x02b9_4c2f];
         assert_eq!(pcg4d([1, 2, 3, 4]), other);
     }
+
+    /// Of the four numbers of a draw, and the next draw: chi^2 of all pairs in 16 x 16 bins is 255 +- 22.6 of numbers that
+    /// know nothing of each other.
+    #[test]
+    fn numbers_of_a_draw_know_nothing_of_each_other() {
+        let count = 40_000;
+        for [a, b] in [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3], [3, 4]] {
+            let pairs =
+                |k: u32| [a, b].map(|n| random_numbers::<f64>([k % 200, k / 200, 8 + n, 0]));
+            for (i, j) in (0..16).map(|n| (n / 4, n % 4)) {
+                let mut bins = [0.0; 256];
+                for [x, y] in (0..count).map(pairs) {
+                    bins[(16.0 * x[i]) as usize * 16 + (16.0 * y[j]) as usize] += 1.0;
+                }
+                let even = f64::from(count) / 256.0;
+                let chi: f64 = bins.iter().map(|n: &f64| (n - even).powi(2) / even).sum();
+                assert!(chi < 255.0 + 6.0 * 22.6, "{a} {b} {i} {j}: {chi}");
+            }
+        }
+    }
 }

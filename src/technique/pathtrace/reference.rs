@@ -11,11 +11,11 @@ use crate::real::{Real, add, dot, scale};
 use crate::shaders::Frame;
 use crate::technique::reference::{Gathered, Samples, moved};
 
-/// Draws of a collision, and of the direction behind it.
-const OF_COLLISION: u32 = 0x4000_0000;
-const OF_DIRECTION: u32 = 0x8000_0000;
-/// And of a direction to a sky.
-const OF_SKY: u32 = 0xc000_0000;
+/// Numbers of a draw: of the way, of a collision, of the direction behind it and of that to a sky.
+const NUMBERS_OF_DRAW: u32 = 4;
+const OF_COLLISION: u32 = 1;
+const OF_DIRECTION: u32 = 2;
+const OF_SKY: u32 = 3;
 /// Behind so many bounces, weights under `LEAST` end by chance.
 const FEWEST_BOUNCES: u32 = 4;
 const LEAST: f64 = 0.1;
@@ -97,15 +97,15 @@ impl<R: Real> Path<R> {
         };
         while let Some((color, place)) = path.collide(of, &mut walk, &mut key) {
             path.has_met = true;
-            if frame.path_bounces == 0 {
-                path.radiance = color;
+            if frame.path_bounces == 0 && frame.emission_point_count == 0 {
+                path.radiance = times(path.weight, color);
             }
             if path.bounces == frame.path_bounces {
                 return path;
             }
             let albedo = R::from_f32(frame.path_albedo);
             let albedo = color.map(|c| c * albedo);
-            key[2] |= OF_COLLISION;
+            key[2] += OF_COLLISION;
             let numbers = random_numbers::<R>(key);
             let from = walk.world.at(walk.t);
             let at = Collision {
@@ -118,7 +118,7 @@ impl<R: Real> Path<R> {
             if !at.is_coated(frame) {
                 path.weight = std::array::from_fn(|c| path.weight[c] * albedo[c]);
             }
-            key[2] = path.draw | OF_SKY;
+            key[2] = NUMBERS_OF_DRAW * path.draw + OF_SKY;
             let (way, light, reach) = at.light(frame, numbers, key);
             if (0..3).any(|c| path.weight[c] * light[c] > zero) {
                 let way = Ray {
@@ -128,10 +128,10 @@ impl<R: Real> Path<R> {
                 let mut walk = Walk::along(frame, way);
                 walk.end = walk.end.min(reach);
                 let through = path.through(of, walk, &mut key);
-                path.radiance =
-                    std::array::from_fn(|c| path.radiance[c] + path.weight[c] * light[c] * through);
+                let brought = times(times(path.weight, light), through);
+                path.radiance = add(path.radiance, brought);
             }
-            key[2] = path.draw | OF_DIRECTION;
+            key[2] = NUMBERS_OF_DRAW * path.draw + OF_DIRECTION;
             let numbers = random_numbers::<R>(key);
             path.bounces += 1;
             let (direction, weight) = at.scattered(frame, numbers);
@@ -177,7 +177,7 @@ impl<R: Real> Path<R> {
 
     /// The next numbers of the path.
     fn draw(&mut self, key: &mut [u32; 4]) -> [R; 4] {
-        key[2] = self.draw;
+        key[2] = NUMBERS_OF_DRAW * self.draw;
         self.draw += 1;
         random_numbers(*key)
     }
@@ -195,29 +195,56 @@ impl<R: Real> Path<R> {
                 return None;
             }
             let place = walk.voxel.at(walk.t);
-            let (color, chance) = matter(of, place);
-            if v < chance {
+            let Matter {
+                color,
+                chances,
+                shine,
+            } = Matter::at(of, place);
+            self.radiance = add(self.radiance, times(self.weight, shine));
+            let chance = self.chance(of.frame(), chances);
+            let one = R::from_f64(1.0);
+            let is_real = v < chance;
+            if of.frame().extinction_is_colored != 0 {
+                let (taken, part) = match is_real {
+                    true => (chances, chance),
+                    false => (chances.map(|c| one - c), one - chance),
+                };
+                self.weight = times(self.weight, taken.map(|c| c / part));
+            }
+            if is_real {
                 return Some((color, place));
             }
         }
     }
 
+    /// That a tentative collision is a real one.
+    fn chance(&self, frame: &Frame, chances: [R; 3]) -> R {
+        if frame.extinction_is_colored == 0 {
+            return chances[0];
+        }
+        let real = dot(self.weight, chances);
+        let one = R::from_f64(1.0);
+        real / (real + dot(self.weight, chances.map(|c| one - c)))
+    }
+
     /// What comes through along a walk: ratio tracking, and roulette where little does.
-    fn through(&mut self, of: &impl Samples<R>, mut walk: Walk<R>, key: &mut [u32; 4]) -> R {
-        let (zero, least) = (R::from_f64(0.0), R::from_f64(LEAST));
-        let mut through = R::from_f64(1.0);
+    fn through(&mut self, of: &impl Samples<R>, mut walk: Walk<R>, key: &mut [u32; 4]) -> [R; 3] {
+        let (zero, one, least) = (R::from_f64(0.0), R::from_f64(1.0), R::from_f64(LEAST));
+        let mut through = [one; 3];
         loop {
             let [u, v, ..] = self.draw(key);
             if !walk.step(of.frame(), u) {
                 return through;
             }
-            let (_, chance) = matter(of, walk.voxel.at(walk.t));
-            through = through * (R::from_f64(1.0) - chance);
-            if through < least {
-                through = if v * least < through { least } else { zero };
+            let Matter { chances, .. } = Matter::at(of, walk.voxel.at(walk.t));
+            through = times(through, chances.map(|c| one - c));
+            let most = through[0].max(through[1].max(through[2]));
+            if most < least {
+                let part = if v * least < most { least / most } else { zero };
+                through = scale(through, part);
             }
-            if through <= zero {
-                return zero;
+            if through.iter().all(|&t| t <= zero) {
+                return through;
             }
         }
     }
@@ -240,16 +267,43 @@ impl<R: Real> Path<R> {
     }
 }
 
-/// Colour of what is there, and the chance that a tentative collision is a real one.
-fn matter<R: Real>(of: &impl Samples<R>, place: [R; 3]) -> ([R; 3], R) {
-    let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));
-    let Some(value) = of.value(place) else {
-        return ([zero; 3], zero);
-    };
-    let [r, g, b, extinction] = of.classify(value);
-    let [density, majorant] = [of.frame().path_density, of.frame().path_majorant];
-    let chance = extinction * R::from_f32(density) / R::from_f32(majorant);
-    ([r, g, b], chance.min(one))
+fn times<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
+    std::array::from_fn(|c| a[c] * b[c])
+}
+
+/// What a tentative collision finds.
+struct Matter<R> {
+    color: [R; 3],
+    /// Of each colour, that it is a real one.
+    chances: [R; 3],
+    /// What matter sends out there, of a path of weight 1.
+    shine: [R; 3],
+}
+
+impl<R: Real> Matter<R> {
+    /// In voxel space.
+    fn at(of: &impl Samples<R>, place: [R; 3]) -> Self {
+        let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));
+        let Some(value) = of.value(place) else {
+            return Self {
+                color: [zero; 3],
+                chances: [zero; 3],
+                shine: [zero; 3],
+            };
+        };
+        let frame = of.frame();
+        let [r, g, b, extinction] = of.classify(value);
+        let [density, majorant] = [frame.path_density, frame.path_majorant].map(R::from_f32);
+        let extinctions = match frame.extinction_is_colored != 0 {
+            true => of.extinctions(value),
+            false => [extinction; 3],
+        };
+        Self {
+            color: [r, g, b],
+            chances: extinctions.map(|sigma| (sigma * density / majorant).min(one)),
+            shine: of.emission(value).map(|e| e / majorant),
+        }
+    }
 }
 
 /// The normal of a surface, on the side that the path comes from; `None`: in the medium.

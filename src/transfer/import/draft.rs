@@ -171,6 +171,7 @@ impl Draft {
                 reference_length: self.reference_length,
                 interpolation: Interpolation::Linear,
                 gradient_transfer: None,
+                medium: None,
             },
             origin: self.origin,
             name: self.name,

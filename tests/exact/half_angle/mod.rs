@@ -86,6 +86,7 @@ fn white(steps: &[(f64, f64)]) -> TransferFunction {
         reference_length: Some(1.0),
         interpolation: Interpolation::Step,
         gradient_transfer: None,
+        medium: None,
     }
 }
 

@@ -93,6 +93,7 @@ fn holes_cuts_and_widgets_throw_the_shadows_of_their_references() {
         },
     };
     let gradient_transfer = TransferFunction {
+        medium: None,
         gradient_transfer: Some(GradientTransfer {
             steepest: Some(0.3),
             share: Vec::new(),

@@ -3,6 +3,7 @@
 
 mod camera;
 mod lamps;
+pub mod medium;
 mod noise;
 mod sky;
 mod surfaces;
@@ -34,6 +35,7 @@ pub fn matter(albedo: [f64; 3], extinctions: &[(f64, f64)]) -> TransferFunction 
         reference_length: Some(1.0),
         interpolation: Interpolation::Linear,
         gradient_transfer: None,
+        medium: None,
     }
 }
 
@@ -110,7 +112,7 @@ pub fn mean(picture: &Picture, channel: usize) -> [f64; 2] {
 }
 
 /// Within four standard errors, of which none is large.
-fn assert_near(what: &str, [found, error]: [f64; 2], wanted: f64) {
+pub fn assert_near(what: &str, [found, error]: [f64; 2], wanted: f64) {
     assert!(error < 0.02 * wanted, "{what}: {error} of {wanted}");
     let off = (found - wanted) / error.max(1e-12);
     assert!(
@@ -359,7 +361,7 @@ fn white_matter_in_an_even_sky_is_as_bright_as_the_sky() {
     }
 }
 
-fn lit() -> PathTracing {
+pub fn lit() -> PathTracing {
     PathTracing {
         samples: 4,
         albedo: 0.9,

@@ -184,6 +184,7 @@ fn weighted() -> TransferFunction {
         ),
     ];
     TransferFunction {
+        medium: None,
         gradient_transfer: Some(GradientTransfer {
             steepest: Some(0.3),
             share: Vec::new(),

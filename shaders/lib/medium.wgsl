@@ -1,0 +1,19 @@
+// What a transfer function says of matter that scatters light, by its points: extinctions per world length of red, green and
+// blue, of opacity where nothing else is said, and radiance per world length. CPU reference: src/transfer/points.rs.
+
+#import points
+#import extinction
+
+fn extinctions_at(value: f32) -> vec3<f32> {
+    let first = frame.color_point_count;
+    let found = between_points(value, first, frame.opacity_point_count, frame.interpolation_is_step);
+    if frame.opacity_is_extinction != 0u {
+        return found.yzw / frame.reference_length;
+    }
+    return vec3(extinction_of(found.y, frame.reference_length));
+}
+
+fn emission_at(value: f32) -> vec3<f32> {
+    let first = frame.color_point_count + frame.opacity_point_count;
+    return between_points(value, first, frame.emission_point_count, frame.interpolation_is_step).yzw;
+}
