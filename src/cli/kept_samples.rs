@@ -34,7 +34,7 @@ use std::{
 };
 
 const MAGIC: &[u8] = b"stratavox samples\n";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// A scene has its functions in it, of at most as much.
 const MAX_WORDS_BYTES: u32 = 8 << 20;
 

@@ -77,6 +77,7 @@ fn npy_files_are_what_numpy_writes() {
         [
             "out.depth.npy",
             "out.label.npy",
+            "out.line.npy",
             "out.noise.npy",
             "out.normal.npy",
             "out.npy",
@@ -143,6 +144,7 @@ fn exr_files_hold_the_same_floats_and_a_channel_for_each_layer() {
             "R",
             "depth",
             "label",
+            "line",
             "noise",
             "normal.X",
             "normal.Y",
