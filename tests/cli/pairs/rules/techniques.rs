@@ -1,6 +1,6 @@
 //! Techniques: what slices, base planes and splats have no room for.
 
-use super::{Rule, no_meaning, not_built, of};
+use super::{Rule, needs, no_meaning, not_built, of};
 
 const POINTS: &[&str] = &["scattered points"];
 const SPHERES: &[&str] = &["scattered points as spheres"];
@@ -30,6 +30,11 @@ pub const RULES: &[Rule] = &[
     no_meaning(
         "splatting is for what lies behind cuts",
         "a Gaussian ends nowhere, and has no face",
+    ),
+    needs(
+        "image-aligned sheets that a slice of splats reaches into",
+        "--samples-per-voxel 0.2",
+        "levels far apart reach through many sheets that are as thick as columns are wide, more than there is room for",
     ),
     no_meaning(
         "splatting is for samples that are sheets, not for pre-integrated classification",
