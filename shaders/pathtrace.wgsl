@@ -42,8 +42,8 @@ const PATH: u32 = 1u;
 const SHADOW: u32 = 2u;
 const SCATTER: u32 = 3u;
 
-// Numbers of a draw: of the way, of a collision, of the direction behind it and of that to a sky. They differ in low bits: of
-// keys that differ in the highest alone pcg4d has numbers that hang together.
+// Numbers of a draw: of the way, of a collision, of the direction behind it and of that to a sky. They differ in low bits:
+// numbers that pcg4d makes of keys that differ in the highest bits alone are correlated.
 const NUMBERS_OF_DRAW: u32 = 4u;
 const OF_COLLISION: u32 = 1u;
 const OF_DIRECTION: u32 = 2u;

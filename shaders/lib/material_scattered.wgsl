@@ -1,8 +1,8 @@
 // Light that matter scatters once on its way to the eye (Kajiya and Von Herzen 1984). In place of its colour a sample has
 //
-//     S = albedo (sum over lights of p(c) E T + T_sky sky) + emission / sigma        E = pi colour,  c between the directions of travel
+//     S = albedo (sum over lights of p(c) E T + T_sky sky) + emission / sigma
 //
-// and of a point pi colour d^2 times the mean of 1 / r^2 over its segment, d the distance where that is pi colour. Where light is
+// with E = pi colour and c between the directions of travel, and of a point pi colour d^2 times the mean of 1 / r^2 over its segment, d the distance where that is pi colour. Where light is
 // not followed from here on, T comes from the light volume. CPU reference: src/technique/scattered_light.rs.
 
 #import transfer_{transfer}

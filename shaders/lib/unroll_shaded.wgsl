@@ -33,8 +33,8 @@ struct Met {
     shows: bool,
 }
 
-// Sample k, which shows nothing where there is no data and where its value is transparent, and sends out no light. A cut face has its own
-// colours.
+// Sample k, which shows nothing where there is no data, and where its value is transparent and sends out no light. A cut face
+// has its own colours.
 fn met(segments: RaySegments, k: i32) -> Met {
     let segment = segment_at(segments, k);
     let sample = sample_in(segments, k, segment);

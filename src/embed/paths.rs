@@ -21,7 +21,8 @@ pub(super) struct Traced {
     camera: Camera,
     /// How often the volume had been updated.
     updates: u64,
-    /// Paths of each pixel.
+    /// Paths of each pixel, before this frame and with it.
+    before: u32,
     paths: u32,
 }
 
@@ -29,7 +30,7 @@ impl Renderer {
     /// Of how many paths a pixel the picture of the last frame is the mean ([`Technique::Pathtrace`](crate::technique::Technique)).
     /// Each frame adds [`samples_per_frame`](crate::technique::pathtrace::PathTracing::samples_per_frame), of a driver that counts
     /// the turns of loops 4 at most, until there are [`samples`](crate::technique::pathtrace::PathTracing::samples): those after
-    /// it cost next to nothing and show the same. Another camera, function, volume, size or settings, an update of the volume, and
+    /// it trace none and show the same. Another camera, function, volume, size or settings, an update of the volume, and
     /// a frame in parts that was given up begin anew, with the same random numbers. What the host has drawn is not
     /// compared: see [`Renderer::restart_paths`].
     pub fn paths_traced(&self) -> u32 {
@@ -42,32 +43,37 @@ impl Renderer {
         self.traced = None;
     }
 
-    /// What the next frame is the mean of, before and after it; 0 where no paths are traced.
-    pub(super) fn paths_of(&self, shot: &FrameInfo) -> (u32, Option<Traced>) {
+    /// What the next frame is the mean of; `None` where no paths are traced.
+    pub(super) fn paths_of(&self, shot: &FrameInfo) -> Option<Traced> {
         let settings = &self.class.settings;
         if !settings.technique.traces_paths() {
-            return (0, None);
+            return None;
         }
         let (camera, updates) = (*shot.camera, self.volume.updates.done());
         let goes_on = |traced: &Traced| traced.camera == camera && traced.updates == updates;
         let before = self.traced.filter(goes_on).map_or(0, |t| t.paths);
         let most = paths_at_once(self.gpu.limits().max_loop_turns);
         let left = settings.path.samples.saturating_sub(before);
-        let traced = Traced {
+        Some(Traced {
             camera,
             updates,
+            before,
             paths: before + settings.path.samples_per_frame.min(most).min(left),
-        };
-        (before, Some(traced))
+        })
     }
 }
 
 impl Traced {
-    /// Tells the parameters of a frame how many paths come behind how many.
-    pub fn tell(&self, before: u32, frame: &mut Frame) {
-        frame.path_before = before;
-        frame.path_first += before;
-        frame.path_count = self.paths - before;
+    /// Whether the frame begins a picture.
+    pub fn is_new(&self) -> bool {
+        self.before == 0
+    }
+
+    /// Tells the parameters of the frame how many paths come behind how many.
+    pub fn tell(&self, frame: &mut Frame) {
+        frame.path_before = self.before;
+        frame.path_first += self.before;
+        frame.path_count = self.paths - self.before;
     }
 }
 

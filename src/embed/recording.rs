@@ -282,13 +282,13 @@ impl Renderer {
             false => class.depth_access(),
             true => DepthAccess::Sampled,
         };
-        let (before, traced) = self.paths_of(shot);
+        let traced = self.paths_of(shot);
         let mut write =
             |mut recording: Recording, depth_access: DepthAccess| -> Result<BrickPass, Error> {
                 recording.skip(skip);
                 if let (Some(of_paths), Some(traced)) = (&self.function.paths, &traced) {
                     of_paths.fields.tell(&mut recording.frame);
-                    traced.tell(before, &mut recording.frame);
+                    traced.tell(&mut recording.frame);
                 }
                 match (depth, depth_access) {
                     (Some(depth), _) if !class.host_depth => recording.in_depths_of(&depth, center),
@@ -378,8 +378,6 @@ impl Renderer {
             sets,
             ..
         } = &mut self.frames[frame];
-        // What frames before have read and written of a mean comes first.
-        let adds_up = self.mean.is_some();
         for (canvas, sets, bricks) in [
             (
                 self.mean.as_mut().or(picture.as_mut()),
@@ -391,8 +389,11 @@ impl Renderer {
             let (Some(canvas), Some(bound)) = (canvas, sets.get(copy)) else {
                 continue;
             };
-            if part.is_first && !adds_up {
-                canvas.begin();
+            match made.traced {
+                None if part.is_first => canvas.begin(),
+                // Frames that are not done show what they had.
+                Some(traced) if part.is_first && traced.is_new() => canvas.begin_anew(),
+                _ => {}
             }
             let gpu = &self.gpu;
             let mut player = Player { gpu, cmd, canvas };

@@ -179,12 +179,20 @@ impl Renderer {
                 settings.per_mode.exact_maximum,
                 settings.per_mode.depth_cue == 0.0,
                 settings.is_half_angle(),
-                settings.path.sky_picture.clone(),
             )
         };
         let is_same =
             kind(&class.settings) == kind(&self.class.settings) && variant == self.variant;
         let levels = |settings: &Settings| settings.per_mode.levels.clone();
+        let sky = |settings: &Settings| {
+            let traces = settings.technique.traces_paths();
+            settings.path.sky_picture.clone().filter(|_| traces)
+        };
+        let skies = [&self.class, &class].map(|class| sky(&class.settings));
+        if skies[0] != skies[1] {
+            let [made, wanted] = skies.map(|sky| format!("the picture of the sky {sky:?}"));
+            return Err(Error::OtherDescription { made, wanted });
+        }
         let empties_other = class.settings.mode == Mode::Iso
             && levels(&class.settings) != levels(&self.class.settings);
         if !is_same {

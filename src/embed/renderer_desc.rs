@@ -113,7 +113,7 @@ impl RendererDesc {
             ),
             (
                 traces && path.denoise,
-                "path tracing without noise",
+                "path tracing with `PathTracing::denoise`",
                 "draw its picture by `offscreen::Renderer`",
             ),
             (

@@ -26,6 +26,8 @@ pub enum Use {
     DrawIndirect,
     /// As `before`: a compute shader has used it, and the content is given up.
     ComputeDone,
+    /// As `before`: compute and fragment shaders have used it, and the content is given up.
+    ShadersDone,
     /// A color target, blended or not.
     ColorTarget,
     /// A depth attachment, tested and written.
@@ -92,6 +94,11 @@ impl Use {
                 Layout::GENERAL,
             ),
             Self::ComputeDone => (Stage::COMPUTE_SHADER, STORAGE, Layout::UNDEFINED),
+            Self::ShadersDone => (
+                Stage::from_raw(Stage::COMPUTE_SHADER.as_raw() | Stage::FRAGMENT_SHADER.as_raw()),
+                STORAGE,
+                Layout::UNDEFINED,
+            ),
             Self::ColorTarget => (
                 Stage::COLOR_ATTACHMENT_OUTPUT,
                 COLOR,

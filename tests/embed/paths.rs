@@ -1,12 +1,12 @@
 //! Pictures of paths in a host's frames: frame by frame they become the offscreen picture of as many paths, and they begin
 //! anew where something has changed.
 
-use crate::embed_shared::{DepthImage, Host, HostImage, READ, Stage, eyes, offscreen};
+use crate::embed_shared::{Host, HostImage, Stage, draw, eyes, offscreen};
 use ash::vk;
 use std::sync::Arc;
-use stratavox::camera::{Camera, DepthConvention, HostDepth};
-use stratavox::embed::{Error, FrameInfo, HostDepthImage, Renderer, RendererDesc, Volume};
-use stratavox::gpu::{DepthClass, Load, TargetClass};
+use stratavox::camera::Camera;
+use stratavox::embed::{Error, FrameInfo, Renderer, RendererDesc, Volume};
+use stratavox::gpu::Load;
 use stratavox::technique::pathtrace::{Lens, PathTracing, Phase, SkyPicture};
 use stratavox::technique::{ClipPlane, Light, Settings, Technique};
 
@@ -169,6 +169,34 @@ fn what_changes_begins_a_picture_anew() {
 }
 
 #[test]
+fn a_frame_that_is_never_submitted_is_begun_anew() {
+    let host = Host::new();
+    let stage = stage(path());
+    let mut renderer = renderer(&host, &stage);
+    let image = HostImage::new(&host, FORMAT, stage.extent);
+    let lost = host.command_buffer();
+    host.record(lost, |cmd| {
+        let shot = FrameInfo {
+            frame: 0,
+            camera: &stage.camera,
+            depth: None,
+        };
+        let load = Load::Clear([0.0; 4]);
+        // SAFETY: the tables are recorded once more below; nothing of this runs.
+        unsafe { renderer.record_into(cmd, &shot, &image.target(), load) }.unwrap();
+    });
+    renderer.restart_paths();
+    // The tables and what is empty went with it.
+    renderer.set_function(Some(&stage.transfer)).unwrap();
+    let found = frames(&host, &mut renderer, &stage.camera, 1);
+    let of_two = self::stage(PathTracing {
+        samples: 2,
+        ..path()
+    });
+    assert_is(&found, &offscreen(&of_two), "the first frame that runs");
+}
+
+#[test]
 fn a_frame_in_parts_that_is_given_up_leaves_no_paths_behind() {
     let host = Host::new();
     let stage = stage(path());
@@ -232,7 +260,7 @@ fn what_a_host_has_drawn_ends_the_rays_of_the_eye() {
     let open = offscreen(&stage);
     let center = stage.grid.center();
     let drawn = vec![depth.of(center) as f32; (stage.extent[0] * stage.extent[1]) as usize];
-    let found = behind(&host, &stage, &depth, &drawn);
+    let found = draw(&host, &stage, &camera, &depth, &drawn, None).pixels;
     // The same plane, at the depth that f32 holds.
     let (origin, forward) = (camera.eye, (camera.target - camera.eye).normalize());
     let t = depth.distance(origin, forward, f64::from(drawn[0]));
@@ -254,45 +282,6 @@ fn what_a_host_has_drawn_ends_the_rays_of_the_eye() {
     assert!(parted <= 4, "{parted}");
 }
 
-fn behind(host: &Host, stage: &Stage, depth: &HostDepth, drawn: &[f32]) -> Vec<[f64; 4]> {
-    let class = RendererDesc {
-        target: TargetClass {
-            depth: Some(DepthClass {
-                format: vk::Format::D32_SFLOAT,
-                has_stencil: false,
-                is_reversed: depth.nearer == DepthConvention::Reversed,
-            }),
-            ..FORMAT.into()
-        },
-        host_depth: true,
-        ..desc(stage)
-    };
-    let buffer = DepthImage::new(host, stage.extent, drawn, READ);
-    // SAFETY: the buffer outlives the renderer.
-    let read = unsafe { HostDepthImage::new(buffer.view, READ.2, stage.extent) };
-    let (volume, function) = (volume(host, stage), Some(&stage.transfer));
-    let mut renderer =
-        Renderer::new(host.gpu(), &volume, function, class, stage.extent, &[read]).unwrap();
-    let image = HostImage::new(host, FORMAT, stage.extent);
-    let shot = FrameInfo {
-        frame: 0,
-        camera: &stage.camera,
-        depth: Some(*depth),
-    };
-    // SAFETY: recorded in order; `run` waits.
-    host.run(|cmd| unsafe {
-        renderer.record(cmd, &shot).unwrap();
-        image.make_target(cmd);
-        let attached = Some(&buffer);
-        buffer.barrier(cmd, READ, crate::embed_shared::ATTACHED);
-        host.begin_rendering_before(cmd, image.view, stage.extent, [0.0; 4], attached);
-        renderer.draw(cmd, 0).unwrap();
-        host.device.cmd_end_rendering(cmd);
-        image.fetch_drawn(cmd);
-    });
-    image.numbers()
-}
-
 #[test]
 fn what_hosts_do_not_have_of_paths_is_refused_by_name() {
     let host = Host::new();
@@ -308,7 +297,7 @@ fn what_hosts_do_not_have_of_paths_is_refused_by_name() {
     type Change = fn(&mut RendererDesc);
     let cases: [(Change, &str); 6] = [
         (|d| d.settings.path.noise = Some(0.1), "that ends by itself"),
-        (|d| d.settings.path.denoise = true, "without noise"),
+        (|d| d.settings.path.denoise = true, "denoise"),
         (|d| d.picks = true, "the depth of path tracing"),
         (
             |d| (d.host_depth, d.settings.path.shows_sky) = (true, true),

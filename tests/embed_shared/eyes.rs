@@ -9,6 +9,7 @@ use std::sync::Arc;
 use stratavox::camera::{Camera, DepthConvention, HostDepth};
 use stratavox::embed::{FrameInfo, HostDepthImage, Pick, Renderer, RendererDesc, Volume};
 use stratavox::gpu::{DepthClass, TargetClass};
+use stratavox::technique::Technique;
 
 /// What is drawn there is what was computed, to the bit.
 const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
@@ -128,7 +129,8 @@ pub fn draw(
     drawn: &[f32],
     pixel: Option<[u32; 2]>,
 ) -> Found {
-    let gives_depth = stage.settings.mode.has_depth();
+    let is_mean = stage.settings.technique == Technique::Pathtrace;
+    let gives_depth = stage.settings.mode.has_depth() && !is_mean;
     let mut volume = Volume::new(host.gpu(), &stage.volume, &stage.settings).unwrap();
     let image = HostImage::new(host, FORMAT, stage.extent);
     let class = RendererDesc {

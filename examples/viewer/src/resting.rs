@@ -90,7 +90,7 @@ impl Look {
     }
 }
 
-/// The look that `stratavox render --look cinematic` has.
+/// Matter, surfaces and light of `stratavox render --look cinematic`, which also takes out noise and has a curve of tones.
 fn settings(look: &Look) -> Option<Settings> {
     let is_possible = look.scatters
         && look.technique == Technique::Raycast

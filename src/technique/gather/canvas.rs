@@ -72,6 +72,14 @@ impl Canvas {
         }
     }
 
+    /// The same where frames that are not done may still read the images.
+    pub fn begin_anew(&mut self) {
+        self.resumes = false;
+        for (_, last) in &mut self.images {
+            *last = Use::ShadersDone;
+        }
+    }
+
     /// A picture goes on: what comes next is put to what the images hold, bricks behind bricks or a frame onto those
     /// before it.
     pub fn resume(&mut self) {

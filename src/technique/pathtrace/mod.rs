@@ -157,8 +157,9 @@ fn gather(desc: &GatherDesc) -> Result<Box<dyn Gather>, gpu::Error> {
     Ok(rays_of(desc.gpu, RayPass::picture_of(desc.gpu, &name)?))
 }
 
-/// How many paths a pixel has in one pass, and where a driver ends loops after so many turns.
+/// How many paths a pixel has in one pass at most.
 pub(crate) const PATHS_OF_PASS: u32 = 8;
+/// The same where a driver ends loops after so many turns.
 const PATHS_OF_LOOP: u32 = 4;
 
 /// As many as one pass has at most.
