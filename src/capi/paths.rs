@@ -141,3 +141,89 @@ pub unsafe extern "C" fn sv_renderer_restart_paths(
     // SAFETY: the caller's promise.
     unsafe { guard(diagnostic, body) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::mem::{MaybeUninit, size_of};
+
+    fn zero() -> sv_path_tracing {
+        // SAFETY: all bits are right for the type.
+        let zero: sv_path_tracing = unsafe { MaybeUninit::zeroed().assume_init() };
+        sv_path_tracing {
+            struct_size: size_of::<sv_path_tracing>() as u32,
+            ..zero
+        }
+    }
+
+    fn of(c: &sv_path_tracing) -> PathTracing {
+        // SAFETY: it is as long as it says.
+        let made = unsafe { paths(c, Vec::new()) };
+        made.unwrap_or_else(|_| panic!("refused"))
+    }
+
+    #[test]
+    fn zero_is_the_default_under_the_light_of_the_eye() {
+        let wanted = PathTracing {
+            lights: vec![Light::of_eye()],
+            phase: Phase::TwoLobes {
+                part: 1.0,
+                g: [0.0; 2],
+            },
+            ..PathTracing::default()
+        };
+        assert_eq!(of(&zero()), wanted);
+        let lit_by_sky = sv_path_tracing {
+            sky: [0.0, 0.0, 0.5],
+            ..zero()
+        };
+        assert_eq!(of(&lit_by_sky).lights, []);
+    }
+
+    #[test]
+    fn each_field_says_what_its_name_does() {
+        let c = sv_path_tracing {
+            samples: 9,
+            samples_per_frame: 3,
+            seed: 7,
+            bounces: 5,
+            density: 2.0,
+            albedo: 0.5,
+            mean_cosine: 0.6,
+            second_mean_cosine: -0.2,
+            second_part: 0.25,
+            light_size_degrees: 12.0,
+            sky: [0.1, 0.2, 0.3],
+            surface: 8.0,
+            f0: 0.04,
+            roughness: 0.3,
+            ..zero()
+        };
+        let wanted = PathTracing {
+            samples: 9,
+            samples_per_frame: 3,
+            seed: 7,
+            bounces: Some(5),
+            density: 2.0,
+            albedo: 0.5,
+            phase: Phase::TwoLobes {
+                part: 0.75,
+                g: [0.6, -0.2],
+            },
+            light_size_degrees: 12.0,
+            sky: [0.1, 0.2, 0.3],
+            surface: 8.0,
+            f0: 0.04,
+            roughness: 0.3,
+            ..PathTracing::default()
+        };
+        assert_eq!(of(&c), wanted);
+        let others = sv_path_tracing {
+            is_unscattered: 1,
+            is_rayleigh: 1,
+            ..c
+        };
+        let others = of(&others);
+        assert_eq!((others.bounces, others.phase), (Some(0), Phase::Rayleigh));
+    }
+}
