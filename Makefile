@@ -4,6 +4,8 @@
 #              SwiftShader (fetched by apt; skipped by name where that cannot be); the suite judged by injected faults and by
 #              the CPU reference; what draws once more under the least limits; each barrier of the
 #              examples taken away; many devices one after the other; other operating systems
+# make sweep   all of what `make test` tries a share of: each filter, axis and random picture of the tests that draw many, each pair
+#              of features and each cut of a file; some two hours
 # make fresh   README's two commands, make test and make demo in a new clone without anything built or downloaded
 # make plain   what draws once more, without validation
 # make least   the same under the least limits that Vulkan allows
@@ -24,7 +26,7 @@
 
 SHELL := /bin/bash
 .DEFAULT_GOAL := test
-.PHONY: test test-more fresh lint build drawn-exact drawn-embedded command-line command-line-drawn without-device longer viewer-barriers \
+.PHONY: test test-more sweep fresh lint build drawn-exact drawn-embedded command-line command-line-drawn without-device longer viewer-barriers \
     second conformance-default conformance-least conformance-swiftshader plain least viewer-lint conformance swiftshader swiftshader-unpacked demo pictures sheet first-pictures gallery capi install header api bench gpu-cost driver layers display
 
 CARGO ?= cargo
@@ -141,6 +143,10 @@ longer:
 	STRATAVOX_SWEEP=long $(TEST) --test host $(SHOWN) format_cuts::
 	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --no-fail-fast --test conformance --test leaks $(SHOWN)
 	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --test examples $(SHOWN) $(BARRIERS)
+
+sweep: driver layers
+	STRATAVOX_SWEEP=long STRATAVOX_VALIDATION=sync $(ON_DEVICE) --no-fail-fast --test exact --test matrix --test relations $(SHOWN)
+	STRATAVOX_SWEEP=long $(TEST) --test host $(SHOWN) format_cuts::
 
 command-line:
 	$(ON_DEVICE) --test cli $(SHOWN)

@@ -90,6 +90,16 @@ fn small(line: &str) -> String {
     words.join(" ")
 }
 
+/// The same of phantoms of few voxels.
+fn of_few_voxels(line: &str) -> String {
+    let is_large = |word: &str| word.starts_with("phantom:") && !word.contains("n=");
+    let small = line.split(' ').map(|word| match is_large(word) {
+        true => format!("{word},n=48"),
+        false => word.to_owned(),
+    });
+    small.collect::<Vec<_>>().join(" ")
+}
+
 /// The line without its comment, if it is an example.
 fn example_line(line: &str) -> Option<&str> {
     let line = line.split(" #").next().unwrap_or_default();
@@ -204,7 +214,7 @@ fn every_example_of_every_help_runs() {
         let folder = Folder::new();
         given(&folder);
         for mut example in examples {
-            example.line = small(&example.line);
+            example.line = of_few_voxels(&small(&example.line));
             // What pictures cost on this machine is asked elsewhere, in less time.
             if verb == " bench" {
                 continue;
@@ -269,13 +279,14 @@ fn every_transfer_function_of_the_docs_draws_something() {
     }
 }
 
-/// Runs what a page shows, and gives the folder that it ran in, and how many lines there were.
+/// Runs what a page shows with small pictures, and gives the folder that it ran in, and how many lines there were.
 fn run_page(page: &str) -> (Folder, String, usize) {
     let path = format!("{}/{page}", env!("CARGO_MANIFEST_DIR"));
     let text = fs::read_to_string(path).expect("the page");
-    let examples = of_markdown(&text, page);
+    let mut examples = of_markdown(&text, page);
     let folder = Folder::new();
-    for example in &examples {
+    for example in &mut examples {
+        example.line = small(&example.line);
         example.check(&folder);
     }
     (folder, text, examples.len())

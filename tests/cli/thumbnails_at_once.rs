@@ -127,10 +127,10 @@ fn an_interrupt_leaves_whole_pictures_and_resume_draws_the_rest() {
     use std::process::{Command, Stdio};
     let folder = Folder::new();
     fs::create_dir(folder.path("in")).expect("a folder");
-    for seed in 0..60 {
+    for seed in 0..20 {
         folder.file(&format!("in/v{seed:02}.nrrd"), nrrd(5, seed));
     }
-    let words = "thumbnails in -o out --size 96x96 --device reference";
+    let words = "thumbnails in -o out --size 72x72 --device reference";
     let mut child = folder
         .command(&format!("{words} --progress json"))
         .stderr(Stdio::piped())
@@ -148,13 +148,13 @@ fn an_interrupt_leaves_whole_pictures_and_resume_draws_the_rest() {
     assert!(kill.expect("kill runs").success());
     assert_eq!(child.wait().expect("an end").code(), Some(130));
     let there = pictures(&folder.path("out"));
-    assert!((3..60).contains(&there.len()), "{}", there.len());
+    assert!((3..20).contains(&there.len()), "{}", there.len());
     for (name, bytes) in there.iter().filter(|(name, _)| name.ends_with(".png")) {
         let picture = image::load_from_memory(bytes).unwrap_or_else(|e| panic!("{name}: {e}"));
-        assert_eq!((picture.width(), picture.height()), (96, 96), "{name}");
+        assert_eq!((picture.width(), picture.height()), (72, 72), "{name}");
     }
     folder.run(&format!("{words} --resume")).assert_done();
-    assert_eq!(pictures_of(&folder, "out").len(), 60);
+    assert_eq!(pictures_of(&folder, "out").len(), 20);
 }
 
 /// The most memory that the program had with these words, in bytes.

@@ -4,6 +4,7 @@
 //! A file is cut at each of its first 4096 bytes and at 256 later places. Every sixteenth of these cuts is made here;
 //! `STRATAVOX_SWEEP=long` makes all of them, 174 000 at least (`make test-more`).
 
+use crate::sweep;
 use std::fs::{self, OpenOptions};
 use std::panic::catch_unwind;
 use std::path::{Path, PathBuf};
@@ -107,7 +108,7 @@ fn is_whole(name: &str, bytes: &[u8], found: &Content, whole: &Content) -> bool 
 
 #[test]
 fn a_fixture_cut_anywhere_is_refused() {
-    let is_long = std::env::var_os("STRATAVOX_SWEEP").is_some_and(|sweep| sweep == "long");
+    let is_long = sweep::is_long();
     let begun = Instant::now();
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures");
     let mut paths = Vec::new();

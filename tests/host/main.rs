@@ -34,6 +34,9 @@ mod shapefile;
 #[path = "../shared/survive.rs"]
 mod survive;
 #[cfg(feature = "files")]
+#[path = "../shared/sweep.rs"]
+mod sweep;
+#[cfg(feature = "files")]
 #[path = "../shared/tiff.rs"]
 mod tiff;
 #[path = "../transfer_shared/mod.rs"]

@@ -1,9 +1,9 @@
 //! The matrix of `docs/matrix.md`: every cell is drawn by the device as by its CPU reference, or refused by both with the same
-//! reason, and the page says which. Of wide filters one by turns stands for all.
+//! reason, and the page says which. Of filters other than linear one by turns stands for all.
 
 use crate::cells::{DENOISE, FEATURES, FILTERS, Feature, MODES, Matter, Seen, settings};
 use crate::page;
-use crate::shared::{Worst, compare, device, device_with};
+use crate::shared::{Worst, compare, device, device_with, sweep};
 use glam::dvec3;
 use std::error::Error;
 use std::sync::Arc;
@@ -109,10 +109,10 @@ fn geometry(seen: Seen, volume: &Volume) -> Option<Geometry> {
     (seen == Seen::Tube).then(|| cones.into())
 }
 
-/// Of five filters that are wider than linear one is drawn, by turns: rows have seven of all filters, so that it is another
-/// one in each mode.
+/// Of five filters other than linear one is drawn, by turns: rows have seven of all filters, so that it is another one in each
+/// mode.
 fn is_left(filter: Filter, nth: usize) -> bool {
-    !matches!(filter, Filter::Nearest | Filter::Linear) && !nth.is_multiple_of(5)
+    !sweep::is_long() && filter != Filter::Linear && !nth.is_multiple_of(5)
 }
 
 /// Drawn as computed, or refused by all three in the same words.

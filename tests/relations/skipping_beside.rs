@@ -1,6 +1,6 @@
 //! What rays leave out changes no bit of a picture: functions of gradients, slabs, mixtures and maxima that are faded.
 
-use crate::shared::{device_with, sheared_affine, volume_of};
+use crate::shared::{device_with, share, sheared_affine, volume_of};
 use crate::skipping_shared::{DIMS, Numbers, balls, cameras, hills, samples_of_same_pictures};
 use glam::{DVec3, dvec3};
 use stratavox::gpu::Caps;
@@ -101,7 +101,7 @@ fn compare_many(
         let volume = make(&mut numbers, as_bytes);
         let cameras = cameras(&volume.grid());
         let mut renderer = Renderer::new(device_with(caps()), &volume).expect("a renderer");
-        for _ in 0..pictures {
+        for _ in 0..share(pictures) {
             let mut function = hills(&mut numbers, volume.value_range);
             let mut settings = settings(&mut numbers, &volume);
             change(&mut numbers, &mut settings, &mut function, &volume);
@@ -266,7 +266,7 @@ fn mixtures_are_the_same_whatever_is_left_out() {
         let all = vec![&volumes[0], &volumes[1], &names];
         let mut renderer = Renderer::several(device_with(caps()), all).expect("a renderer");
         let cameras = cameras(&names.grid());
-        for _ in 0..14 {
+        for _ in 0..share(14) {
             let functions = [0, 1].map(|n| hills(&mut numbers, volumes[n].value_range));
             let mut colors = hills(&mut numbers, [0.0, 1.0]);
             let point = |(value, opacity)| OpacityPoint { value, opacity };

@@ -1,7 +1,7 @@
 //! Shear-warp: what its rays leave out, and into how many bricks a volume is cut, changes no bit of a picture; steep beside
 //! the slices and pre-integrated too, where both ends of a slab lie far from its middle.
 
-use crate::shared::{device, device_with, oblique_camera, projections};
+use crate::shared::{device, device_with, oblique_camera, projections, share};
 use crate::skipping_shared::{Numbers, balls, hills, samples_of_same_pictures};
 use stratavox::camera::{Camera, Projection};
 use stratavox::gpu::Caps;
@@ -65,7 +65,7 @@ fn what_rays_through_a_base_plane_leave_out_and_bricks_change_no_bit() {
         let cameras = cameras(&volume.grid());
         let mut whole = Renderer::new(device(), &volume).expect("a renderer");
         let mut bricked = Renderer::new(device_with(small()), &volume).expect("a renderer");
-        for _ in 0..40 {
+        for _ in 0..share(40) {
             let function = hills(&mut numbers, volume.value_range);
             let settings = settings(&mut numbers);
             let scene = Scene {
@@ -100,7 +100,7 @@ fn what_rays_through_a_base_plane_leave_out_and_bricks_change_no_bit() {
     }
     println!("{pictures} pictures, {of_bricks} in bricks, {sums:?} samples");
     assert!(
-        pictures > 50 && of_bricks > 40,
+        pictures > share(60) && of_bricks > share(50),
         "{pictures}, {of_bricks} in bricks"
     );
     assert!(

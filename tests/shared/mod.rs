@@ -7,12 +7,14 @@ mod agree;
 mod chord;
 mod limits;
 pub mod oracle;
+pub mod sweep;
 mod way;
 mod worst;
 
 pub use agree::compare;
 pub use chord::Chord;
 pub use limits::allowed;
+pub use sweep::share;
 pub use way::{Device, Matter, Reference, Way};
 pub use worst::Worst;
 

@@ -63,7 +63,7 @@ fn check(
     let mut renderer = renderer(&volumes);
     let mut last = Vec::new();
     for filter in [Filter::Nearest, Filter::Linear] {
-        for shot in shots(mode) {
+        for shot in of_filter(filter, shots(mode).collect()) {
             let shot = shot.with(|settings| settings.filter = filter);
             let scene = scene(&shot, volume, transfer, Beside::Channels(channels));
             let all = pictures(&mut renderer, &scene);
