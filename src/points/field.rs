@@ -45,8 +45,9 @@ pub struct FieldKernel {
 const ROOM: f64 = 1.0 / 1024.0;
 /// Cells along an axis: f32 then tells 2^-14 of one.
 const MOST_ALONG: f64 = 1000.0;
-/// Cells in all, at most: 16 MiB.
-const MOST_CELLS: f64 = 2_097_152.0;
+/// Cells in all, at most: so many for each point, and 16 MiB.
+const CELLS_OF_POINT: f64 = 64.0;
+const CELLS: std::ops::RangeInclusive<f64> = 4096.0..=2_097_152.0;
 
 /// Points in cells.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,6 +64,8 @@ pub struct PointField {
     starts: Vec<u32>,
     /// N, in the world before it was stretched.
     integral: f64,
+    /// Points in 27 cells around one, at most.
+    most_near: u32,
 }
 
 /// A point, as it is sorted.
@@ -89,7 +92,8 @@ impl PointField {
         let extent = high - corner;
         let mut edge = (radius * (1.0 + ROOM)).max(extent.max_element() / MOST_ALONG);
         let along = |edge: f64| (extent / edge).floor() + 1.0;
-        while along(edge).element_product() > MOST_CELLS {
+        let most = (CELLS_OF_POINT * points.len() as f64).clamp(*CELLS.start(), *CELLS.end());
+        while along(edge).element_product() > most {
             edge *= 1.125;
         }
         let counts = along(edge).to_array().map(|n| n as u32);
@@ -123,7 +127,7 @@ impl PointField {
             };
             *at += 1;
         }
-        Self {
+        let mut made = Self {
             kernel,
             corner,
             edge,
@@ -131,7 +135,10 @@ impl PointField {
             points: sorted,
             starts,
             integral: kernel_integral(radius) / points.stretch,
-        }
+            most_near: 0,
+        };
+        made.most_near = made.count_most_near();
+        made
     }
 
     /// The value at a place of the world; `None` where no point is near.
@@ -232,6 +239,10 @@ impl PointField {
 
     /// Points in 27 cells around one, at most.
     pub fn most_near(&self) -> u32 {
+        self.most_near
+    }
+
+    fn count_most_near(&self) -> u32 {
         let [nx, ny, nz] = self.counts.map(|n| n as i32);
         let around = |k: i32, n: i32| (k - 1).max(0)..=(k + 1).min(n - 1);
         let of_cell = |x: i32, y: i32, z: i32| {
