@@ -491,7 +491,7 @@ fn empty_cells_and_parts_of_rays_change_no_bit() {
         let [camera, ..] = cameras();
         let drawn = |skip, turns| {
             let shot = Case {
-                camera: camera.clone(),
+                camera,
                 settings: Settings {
                     skip,
                     ..settings(mode, 0.9, Quantity::Mean)
