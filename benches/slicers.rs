@@ -200,6 +200,7 @@ impl Caster {
             beside: &[],
             light: None,
             points: None,
+            field: None,
             sky: None,
             skip: Skip::Nothing,
         };

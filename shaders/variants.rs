@@ -148,6 +148,8 @@ const LEAN: Slot = slot("inputs", &["shaded", "gradient_opacity"]);
 /// Light that is scattered once.
 const SCATTERED: Slot = slot("inputs", &["scattered"]);
 const SCALAR: Slot = slot("inputs", &["scalar"]);
+/// The field of scattered points, which has no voxels and no filter.
+const FIELD: Slot = slot("inputs", &["field"]);
 /// Steps that adapt to what is there, of volumes without holes.
 const ADAPTIVE: Slot = slot("inputs", &["adaptive"]);
 const WHOLE: Slot = slot("holes", &["none"]);
@@ -294,6 +296,11 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     (
         "projection",
         &[LINE, PROJECTED, SCALAR, LATTICE, CORNERS, HOLES, CUTS],
+    ),
+    ("raycast", &[LINE, MODE, FIELD, RAY, TRANSFER, LAYERS]),
+    (
+        "projection",
+        &[LINE, constant("mode", &["mip", "minip", "sum"]), FIELD, RAY],
     ),
     // The depth of slices of a stack.
     (

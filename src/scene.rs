@@ -5,7 +5,7 @@ mod labels_over;
 pub(crate) use labels_over::LabelsOver;
 
 use crate::camera::Camera;
-use crate::points::Points;
+use crate::points::{PointField, Points};
 use crate::shaders::{Frame, MAX_CHANNELS};
 use crate::technique::mixture::opacities_have_colors;
 use crate::technique::pathtrace::Medium;
@@ -46,7 +46,8 @@ pub enum Beside<'a> {
     /// length is used, which must be that of the depths. Composite only.
     Classified(&'a [&'a Volume]),
     /// Scattered points, which are drawn in place of the volume: that is [`Points::binned`] of them, and says where they are
-    /// and which values they have. Splatting alone, with [`Splat::of_points`](crate::technique::splat::Splat::of_points).
+    /// and which values they have. By splatting, with [`Splat::of_points`](crate::technique::splat::Splat::of_points), or by rays
+    /// through [`Settings::field`]: then the volume is [`Points::binned_within`] of its radius.
     Points(&'a Points),
 }
 
@@ -262,7 +263,7 @@ impl<'a> Scene<'a> {
     }
 
     /// World length that opacities are for: the transfer function's own, else the smallest spacing; of scattered points as
-    /// much as lies along a ray through the centre of one of the median standard deviation.
+    /// much as lies along a ray through the centre of one of the median standard deviation, or the radius of their field.
     pub fn reference_length(&self) -> f64 {
         self.transfer
             .map_or_else(|| self.default_length(), |f| self.length_of(f))
@@ -311,9 +312,20 @@ impl<'a> Scene<'a> {
         ))
     }
 
+    /// The field of its points, where rays are cast through that.
+    pub(crate) fn point_field(&self) -> Option<PointField> {
+        match (self.beside, self.settings.field) {
+            (Beside::Points(points), Some(kernel)) => Some(PointField::new(points, kernel)),
+            _ => None,
+        }
+    }
+
     fn default_length(&self) -> f64 {
         match self.beside {
-            Beside::Points(points) => reference_length(points.median_std()),
+            Beside::Points(points) => match &self.settings.field {
+                Some(field) => field.radius,
+                None => reference_length(points.median_std()),
+            },
             _ => self.volume.grid().smallest_spacing(),
         }
     }

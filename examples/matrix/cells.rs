@@ -4,7 +4,7 @@ use glam::{DAffine3, DMat3, DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
 use stratavox::offscreen::check_geometry;
 use stratavox::picture::ColorSpace;
-use stratavox::points::Points;
+use stratavox::points::{FieldKernel, Points, Quantity};
 use stratavox::scene::{Beside, Channel, Scene};
 use stratavox::technique::preclassified::preclassified;
 use stratavox::technique::splat::Splat;
@@ -320,6 +320,23 @@ pub const FEATURES: &[Feature] = &[
         Seen::Points,
         |s| {
             s.splat = Splat::of_points();
+            let normal = dvec3(0.6, -0.64, 0.48);
+            let offset = normal.dot(center()) - 1.0;
+            s.clip_planes = vec![ClipPlane { normal, offset }];
+        },
+    ),
+    feature(
+        "scattered points, cast by rays",
+        "`--points-as field`",
+        Seen::Points,
+        |s| s.field = Some(field(Quantity::Mean)),
+    ),
+    feature(
+        "density of scattered points, cast by rays, clip planes",
+        "`--field kernel,density`, `--clip`",
+        Seen::Points,
+        |s| {
+            s.field = Some(field(Quantity::Density));
             let normal = dvec3(0.6, -0.64, 0.48);
             let offset = normal.dot(center()) - 1.0;
             s.clip_planes = vec![ClipPlane { normal, offset }];
@@ -665,6 +682,14 @@ impl Matter {
             Seen::Classified => self.classified[1..].iter().collect(),
             _ => Vec::new(),
         }
+    }
+}
+
+/// Reaches the nearest neighbours.
+fn field(quantity: Quantity) -> FieldKernel {
+    FieldKernel {
+        radius: 5.0,
+        quantity,
     }
 }
 

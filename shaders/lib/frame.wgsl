@@ -221,9 +221,16 @@ struct Frame {
     splat_first: vec3<i32>,
     splat_last: vec3<i32>,
     splat_halo: vec3<f32>,
-    // Scattered points: which of the list of a tile this recording takes.
+    // Scattered points: which of the list of a tile this recording takes; where rays are cast through them, which samples.
     points_first: u32,
     points_end: u32,
+    // The field of points: from voxel space to cells, how many of these there are along each axis, a cell over the radius, 1 over
+    // the integral of the kernel (0: means of values), and whether empty cells are left out.
+    field_from_voxel: mat3x4<f32>,
+    field_cells: vec3<u32>,
+    field_scale: f32,
+    field_density: f32,
+    field_skips: u32,
     // Path tracing: how many paths of each pixel the picture is the mean of already, the first path in this recording, how
     // many, which random numbers they have, and how often they may be scattered.
     path_before: u32,

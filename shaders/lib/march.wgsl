@@ -7,7 +7,7 @@
 #import drawn_tile
 #import faces
 #import lattice_{lattice}
-#import filter_{filter}
+#import filter_{filter=field}
 #import nearest
 #import mask
 #import sample_{inputs}

@@ -4,7 +4,7 @@ use super::{
     Error,
     flags::{InputFlags, Numbers, PointGrid, PointGridFlags},
     flow::FlowFlags,
-    output,
+    load, output,
     progress::{Progress, ProgressWord},
     resume_check::{hash_of, stamp_of},
     signals::Gate,
@@ -135,6 +135,7 @@ impl Convert {
                 progress.note(note);
             }
         }
+        load::prepare(source.as_ref(), &self.input, &progress);
         let written = match options.format {
             VolumeFormat::Bricks => self.bricks(source, &selection, &options, &progress, gate)?,
             _ => self.write(source.as_ref(), &selection, &options, &progress, gate)?,

@@ -73,6 +73,7 @@ fn read_stretched(
     for note in source.header().notes.iter().chain(&note) {
         progress.note(note);
     }
+    prepare(source, &scene.input, progress);
     let (mut volume, loaded) = Loaded::volume(source, pick, &scene.input.limits())?;
     progress.loaded(loaded);
     say_what_was_lost(&volume, "voxels", progress);
@@ -84,6 +85,14 @@ fn read_stretched(
         progress,
     )?;
     Ok((volume, factor))
+}
+
+/// Makes voxels of points where a word wants a grid of them, and tells how far that is.
+pub fn prepare(source: &dyn Source, input: &InputFlags, progress: &Progress) {
+    if input.on_grid.is_some() {
+        progress.stage("interpolate", 0, 1);
+        source.prepare(&|part| progress.part(part));
+    }
 }
 
 /// Takes the noise out of volumes where a word wants it.

@@ -38,7 +38,7 @@ pub fn why_empty(
         (Seen::Clipped, _) => {
             "everything that the camera sees is cut away by --crop or --clip".to_owned()
         }
-        (Seen::Volume, _) if settings.splat.of_points => {
+        (Seen::Volume, _) if settings.splat.of_points || settings.field.is_some() => {
             format!(
                 "no point that is left is seen, or the transfer function covers none of their values; {values}"
             )

@@ -1,6 +1,6 @@
 //! `stratavox convert -o surface.ply --iso VALUE`: where a volume has one value, as a mesh.
 
-use super::{Error, flags::InputFlags, progress::Progress, signals::Gate};
+use super::{Error, flags::InputFlags, load, progress::Progress, signals::Gate};
 use crate::{
     isosurface::{Border, isosurface},
     mesh::MeshFormat,
@@ -40,6 +40,7 @@ impl Surface {
             progress.note(note);
         }
         progress.stage("read", 0, 1);
+        load::prepare(source.as_ref(), input, progress);
         let volume = Volume::read(source.as_ref(), pick, source.header().whole(), &limits)?;
         progress.stage("surface", 0, 1);
         let mesh = isosurface(&volume, self.level, self.border).ok_or_else(|| Error::TooMany {

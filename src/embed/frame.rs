@@ -233,6 +233,7 @@ fn inputs<'a>(given: &Given<'a>, copy: &'a GpuVolume, brick: usize) -> Inputs<'a
         beside: &[],
         light: None,
         points: None,
+        field: None,
         sky: given.sky,
         skip: given.function.skip(given.volume),
     }

@@ -102,7 +102,7 @@ impl RendererDesc {
         let is_in_target = self.slice_blending == SliceBlending::InTarget;
         let refused = [
             (
-                settings.splat.of_points,
+                settings.splat.of_points || settings.field.is_some(),
                 "scattered points",
                 "draw their picture by `offscreen::Renderer`",
             ),

@@ -104,6 +104,7 @@ pub fn made_light(
             beside: &beside,
             light: None,
             points: None,
+            field: None,
             sky: None,
             skip: Skip::Nothing,
         };

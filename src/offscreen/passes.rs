@@ -23,7 +23,7 @@ pub type Key = (
     Technique,
     Mode,
     Order,
-    [bool; 4],
+    [bool; 5],
     (Sheets, bool),
     DepthAccess,
     ShaderVariant,
@@ -45,7 +45,14 @@ pub fn key_of(
     let per_mode = &settings.per_mode;
     let is_cued = per_mode.depth_cue != 0.0;
     let is_half = settings.is_half_angle();
-    let marks = [is_cued, per_mode.exact_maximum, is_half, is_patched];
+    let is_field = settings.field.is_some();
+    let marks = [
+        is_cued,
+        per_mode.exact_maximum,
+        is_half,
+        is_patched,
+        is_field,
+    ];
     (
         technique,
         mode,

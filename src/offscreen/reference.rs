@@ -13,6 +13,7 @@ use super::gathered::{grey_of_picture, layers};
 use super::sum::sum_of;
 use crate::geometry::{Geometry, Seen};
 use crate::picture::Picture;
+use crate::points::PointField;
 use crate::real::{Real, scale};
 use crate::resolve::reference::{light_at, premultiplied};
 use crate::scene::{Beside, LabelsOver, Scene, positions_in_pixel};
@@ -143,8 +144,10 @@ fn render_one<R: Real>(scene: &Scene, geometry: Option<&Geometry>) -> Result<Pic
         .map_or(scene.volume, Coefficients::volume);
     let gradients = source.map(|_| of_gradients);
     let light = light_of::<R>(scene, read, gradients, &grid)?;
+    let field = scene.point_field();
     let gathered = |in_pixel: InPixel, seen: Option<&Seen>| -> Result<_, Error> {
-        let rays = ReferenceRays::new(scene, read, light.as_ref(), &grid, in_pixel)?;
+        let rays =
+            ReferenceRays::new(scene, read, light.as_ref(), field.as_ref(), &grid, in_pixel)?;
         let mut rays = ReferenceRays { gradients, ..rays };
         if let Some(seen) = seen {
             rays.end_at(in_pixel, seen);
@@ -233,6 +236,8 @@ struct ReferenceRays<'a, R> {
     light: Option<&'a LightField<R>>,
     /// The scattered points that are splatted.
     points: Option<ViewPoints>,
+    /// The field of scattered points that rays are cast through.
+    field: Option<&'a PointField>,
     /// Slices to draw; a ray caster has none.
     slices: u32,
     /// The depths at which the rays of pixels end, where something is drawn beside the volume.
@@ -253,6 +258,7 @@ impl<'a, R: Real> ReferenceRays<'a, R> {
         scene: &'a Scene<'a>,
         read: Option<&'a Volume>,
         light: Option<&'a LightField<R>>,
+        field: Option<&'a PointField>,
         grid: &'a Grid,
         in_pixel: InPixel,
     ) -> Result<Self, Error> {
@@ -296,6 +302,9 @@ impl<'a, R: Real> ReferenceRays<'a, R> {
             frame.extinction_is_colored = is_colored.into();
         }
         scene.tell_paths(&mut frame);
+        if let Some(field) = field {
+            view.tell_field(field, &mut frame);
+        }
         Ok(Self {
             scene,
             volumes: read.map_or_else(|| scene.volumes(), |read| vec![read]),
@@ -312,9 +321,12 @@ impl<'a, R: Real> ReferenceRays<'a, R> {
             frame,
             light,
             points: match scene.beside {
-                Beside::Points(points) => Some(ViewPoints::new(&view, points)?),
+                Beside::Points(points) if scene.settings.field.is_none() => {
+                    Some(ViewPoints::new(&view, points)?)
+                }
                 _ => None,
             },
+            field,
             slices,
             ends: None,
         })

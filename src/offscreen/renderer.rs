@@ -10,6 +10,7 @@
 mod behind;
 mod classified;
 mod copied;
+mod field;
 mod filtered;
 mod gather;
 mod kept;
@@ -37,6 +38,7 @@ use super::time_slices::TimeSlices;
 use super::upload::{keep, upload, upload_with_gradient_source};
 use crate::gpu::{Headless, ParameterRing, Timer};
 use crate::picture::{ColorSpace, LayerKind, Picture};
+use crate::points::{FieldKernel, Points};
 use crate::resident::{GpuTransfer, GpuVolume};
 use crate::scene::{Beside, Scene, positions_in_pixel};
 use crate::technique::cost::ms_of_fetches;
@@ -49,6 +51,7 @@ use crate::transfer::{GradientTransfer, TransferFunction};
 use crate::volume::Volume;
 use behind::Behind;
 use copied::Copied;
+use field::Field;
 pub use filtered::Filtered;
 use gather::points_at_once;
 pub use kept::Kept;
@@ -101,6 +104,7 @@ pub struct Renderer<'v> {
     passes_done: [usize; 2],
     /// Geometry in the pictures.
     behind: Option<Behind>,
+    field: Keyed<(Points, FieldKernel), Field>,
     path_ends: Ends<'v>,
     path_sky: PathSky,
     device: Headless,
@@ -374,6 +378,10 @@ impl<'v> Renderer<'v> {
     /// Pipelines and targets for the picture.
     fn prepare(&mut self, scene: &Scene, has_layers: bool) -> Result<(), Error> {
         let gpu = Arc::clone(self.device.gpu());
+        let of_field = match scene.settings.field {
+            Some(_) => self.prepare_field(scene)?,
+            None => 0,
+        };
         let parts = match &self.streaming {
             Some(streaming) => vec![streaming.part()],
             None => parts_of(&self.resident, self.shown, scene),
@@ -383,6 +391,7 @@ impl<'v> Renderer<'v> {
         let at_once = if is_half { 2 } else { BRICKS_AT_ONCE };
         let bricks = parts[0].volume.bricks().len();
         let of_points = match scene.beside {
+            Beside::Points(_) if scene.settings.field.is_some() => of_field,
             Beside::Points(points) => points.len() / points_at_once(&gpu, scene) as usize + 1,
             _ => 0,
         };

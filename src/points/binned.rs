@@ -24,7 +24,16 @@ impl Points {
 
     /// Means of the points in each voxel of a grid of cubes, 64 along the longest edge.
     pub fn binned(&self) -> Volume {
-        let [low, high] = self.bounds();
+        self.binned_in(self.bounds())
+    }
+
+    /// The same of the box of the points and so much around it: the volume of the field of that radius.
+    pub fn binned_within(&self, radius: f64) -> Volume {
+        let [low, high] = distances::bounds(self.places.iter().copied());
+        self.binned_in([low - radius, high + radius])
+    }
+
+    fn binned_in(&self, [low, high]: [DVec3; 2]) -> Volume {
         let extent = high - low;
         let edge = extent.max_element() / MOST_VOXELS;
         let count = (extent / edge)

@@ -4,14 +4,17 @@
 //! x_s, f_s, h_s, m_s        place, value, standard deviation, weight of point s
 //! ```
 //!
-//! [`interpolate`] makes a field of them.
+//! [`interpolate`] makes a field of them on a grid, [`PointField`] one that is asked anywhere.
 //!
 //! Knows nothing of files, and nothing of Vulkan.
 
 mod binned;
 mod distances;
+mod field;
 pub mod interpolate;
 mod neighbours;
+
+pub use field::{FieldKernel, FieldPoint, PointField, Quantity};
 
 use glam::DVec3;
 
@@ -25,6 +28,8 @@ pub struct Points {
     /// Whether these are by distances to neighbours.
     has_default_stds: bool,
     weights: Option<Vec<f32>>,
+    /// How much higher they lie than they were given.
+    stretch: f64,
 }
 
 /// Why there are no points.
@@ -79,6 +84,7 @@ impl Points {
             values,
             has_default_stds,
             weights,
+            stretch: 1.0,
         })
     }
 
@@ -89,6 +95,7 @@ impl Points {
             for place in &mut self.places {
                 place.z *= factor;
             }
+            self.stretch *= factor;
             if self.has_default_stds {
                 self.stds = default_stds(&self.places);
             }

@@ -12,6 +12,7 @@ impl Settings {
     /// # Errors
     /// [`Error::NotFor`], [`Error::SeveralShadowLights`], and [`Error::OutOfRange`] for a window that is none.
     pub fn check_ways(&self) -> Result<(), Error> {
+        self.check_field()?;
         self.check_splats()?;
         self.check_paths()?;
         self.check_scattering()?;
@@ -189,6 +190,7 @@ impl Settings {
     /// # Errors
     /// [`Error::NotFor`].
     pub(crate) fn check_graded(&self) -> Result<(), Error> {
+        self.check_field_function()?;
         self.check_splatted_function()?;
         self.refuse_way(
             "functions of the value alone",

@@ -90,6 +90,9 @@ fn length_inside([low, high]: [DVec3; 2], origin: DVec3, direction: DVec3) -> f6
 /// Some twenty voxels of a slice, each with its part in some five sheets.
 const FETCHES_OF_SHEET: f64 = 60.0;
 
+/// Some thirty points in the cells around a sample of their field.
+const FETCHES_OF_FIELD: f64 = 60.0;
+
 /// Of a path, for each voxel that its ray would meet: it goes there and back some times.
 const FETCHES_OF_PATH: f64 = 4.0;
 
@@ -120,6 +123,9 @@ fn fetches_of_sample(view: &View) -> f64 {
     }
     if settings.technique.splats() {
         return FETCHES_OF_SHEET;
+    }
+    if settings.field.is_some() {
+        return FETCHES_OF_FIELD;
     }
     let of_value = match settings.filter.kernel() {
         Some(_) => 8.0,

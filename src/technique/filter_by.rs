@@ -29,8 +29,8 @@ impl Settings {
         let is_slab =
             self.preintegrated && (!self.technique.casts_rays() || self.has_general_light());
         let is_free = !self.conformance && !is_slab && self.single_scattering.is_none();
-        // Splats read voxels one by one, from the texture itself.
-        let is_splatted = self.technique.splats();
+        // Splats read voxels one by one, from the texture itself; fields of points have none.
+        let is_splatted = self.technique.splats() || self.field.is_some();
         let has_such = !self.technique.draws_stacks() && !self.is_half_angle() && !is_splatted;
         let is_wished = self.filter_by != FilterBy::Sampler;
         mix.is_of_one() && has_such && is_free && is_wished && self.filter == Filter::Linear

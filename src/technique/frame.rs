@@ -47,11 +47,14 @@ fn kernel_number(filter: Filter) -> u32 {
 
 impl View<'_> {
     /// World length of a step: the smallest spacing over the samples per voxel, as much longer as pixels make splats wider;
-    /// of rays through a base plane the distance of slices over that.
+    /// of rays through a base plane the distance of slices over that, of a field of points its radius.
     pub fn step_world(&self) -> f64 {
         if self.settings.technique.is_warped() {
             let row = self.grid.voxel_rows()[stack_axis(self)];
             return 1.0 / (row.length() * self.settings.samples_per_voxel);
+        }
+        if let Some(field) = &self.settings.field {
+            return field.radius / self.settings.samples_per_voxel;
         }
         let spacing = self.grid.smallest_spacing() * self.splat_widening();
         spacing / self.settings.samples_per_voxel

@@ -1,6 +1,7 @@
 //! What every technique reads, by the names that the shaders give it, and which variant of a shader that
 //! asks for.
 
+use super::field::GpuField;
 use super::splat::GpuViewPoints;
 use super::{
     Filter, FilterBy, GpuChannel, GradientStorage, Lattice, LightVolume, Mode, Operator, Role,
@@ -28,6 +29,8 @@ pub struct Inputs<'a> {
     pub light: Option<&'a LightVolume>,
     /// The scattered points of the view, where the settings ask for them.
     pub points: Option<&'a GpuViewPoints>,
+    /// The field that rays are cast through, where the settings ask for one.
+    pub field: Option<&'a GpuField>,
     /// The picture of the sky that paths find light in.
     pub sky: Option<&'a Buffer>,
     /// Where not to look. Its [`Recording`](super::Recording::skip) must be told the same.
@@ -75,6 +78,10 @@ impl Inputs<'_> {
         if let Some(points) = self.points {
             given.push(("view_points", Resource::Storage(points.points())));
             given.push(("tile_points", Resource::Storage(points.tiles())));
+        }
+        if let Some(field) = self.field {
+            given.push(("field_points", Resource::Storage(field.points())));
+            given.push(("field_cells", Resource::Storage(field.cells())));
         }
         let [distance_map, ranges] = match self.skip {
             Skip::Nothing => [self.ring.buffer(); 2],

@@ -56,6 +56,8 @@ impl Settings {
             {
                 Some(Lack::Depth)
             }
+            // It is of points.
+            Normal | Label if self.field.is_some() => Some(Lack::OneNumber),
             Position | Normal | Label if !mode.has_depth() => Some(Lack::Depth),
             // It is of what is drawn beside the volume.
             Depth | Position | Normal | Label | Samples | Line => None,

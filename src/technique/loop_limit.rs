@@ -161,7 +161,8 @@ impl View<'_> {
     ) -> Result<(), Error> {
         // Of a slicer every invocation takes one sample, and paths end by themselves.
         let technique = self.settings.technique;
-        if !technique.casts_rays() || technique.traces_paths() {
+        // Fields of points are recorded in parts (`View::field_samples_at_once`).
+        if !technique.casts_rays() || technique.traces_paths() || self.settings.field.is_some() {
             return Ok(());
         }
         if self.settings.technique.splats() && max_loop_turns != u32::MAX {

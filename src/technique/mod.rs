@@ -11,6 +11,7 @@ pub(crate) mod cost;
 mod error;
 #[doc(hidden)]
 pub mod faces;
+pub mod field;
 mod filter_by;
 mod frame;
 mod frame_of_mode;
@@ -107,6 +108,7 @@ pub use shear_warp::Intermediate;
 pub use skip::{Skip, SkipBy, Skippable};
 pub use slicer::{DepthAccess, Slicer};
 
+use crate::points::FieldKernel;
 use crate::volume::{Spline, kernel::Kernel};
 
 /// The rendering technique.
@@ -258,7 +260,7 @@ pub struct Settings {
     pub smooth: bool,
     /// Composite: what lies between two samples counts, and not only the samples ([`crate::transfer::SlabTable`]).
     pub preintegrated: bool,
-    /// Samples per smallest voxel spacing; positive. 2D stacks have one a slice, [`Lattice::Bresenham`] so many a voxel
+    /// Samples per smallest voxel spacing, or per radius of [`Self::field`]; positive. 2D stacks have one a slice, [`Lattice::Bresenham`] so many a voxel
     /// of the main axis.
     pub samples_per_voxel: f64,
     /// Composite by rays: where the transfer function hardly changes over the values of a macro cell, one sample stands
@@ -299,6 +301,8 @@ pub struct Settings {
     pub dim: f64,
     /// What splats are.
     pub splat: splat::Splat,
+    /// Scattered points are cast by rays, and this is their field. Ray casting only.
+    pub field: Option<FieldKernel>,
     /// What paths are, and the medium, the lights and the sky of [`Self::single_scattering`].
     pub path: pathtrace::PathTracing,
     /// Composite by rays: matter scatters light once on its way to the eye, and does not shine in its colours, which are
@@ -355,6 +359,7 @@ impl Default for Settings {
             per_mode: PerMode::default(),
             dim: DEFAULT_DIM,
             splat: splat::Splat::default(),
+            field: None,
             path: pathtrace::PathTracing::default(),
             single_scattering: None,
         }

@@ -91,7 +91,7 @@ impl Settings {
         let is_one = mix.is_of_one() || self.mode == Mode::Iso;
         // Sheets of values: a projection of splats goes through all.
         let is_refused = self.technique.splats() && self.mode != Mode::Composite;
-        if !self.skip || !is_one || is_refused {
+        if !self.skip || !is_one || is_refused || self.field.is_some() {
             return Skippable::Nothing;
         }
         if !self.technique.casts_rays() {

@@ -63,6 +63,10 @@ impl Reduced {
 }
 
 impl Source for Reduced {
+    fn prepare(&self, watch: &(dyn Fn(f64) + Sync)) {
+        self.source.prepare(watch);
+    }
+
     fn path(&self) -> &Path {
         self.source.path()
     }

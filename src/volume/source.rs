@@ -20,6 +20,11 @@ pub trait Source: Send + Sync {
     /// and [`Piece::loss`] says what that cost.
     fn read(&self, pick: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError>;
 
+    /// Does now what the first read would do otherwise and takes long, and tells how much of it is done, 0 to 1, from any thread.
+    fn prepare(&self, watch: &(dyn Fn(f64) + Sync)) {
+        let _ = watch;
+    }
+
     /// False where a part is found only by reading all that stands before it, as in a file that is compressed as a
     /// whole.
     fn reads_parts(&self) -> bool {

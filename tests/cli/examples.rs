@@ -301,7 +301,7 @@ fn every_command_of_the_page_of_annotation_runs() {
 #[test]
 fn every_command_of_the_page_of_weather_runs() {
     let (folder, _, lines) = run_page("docs/weather.md");
-    assert_eq!(lines, 11);
+    assert_eq!(lines, 13);
     let pictures = [
         "vapor.png",
         "comets.png",
@@ -309,6 +309,8 @@ fn every_command_of_the_page_of_weather_runs() {
         "barbs.png",
         "ground.png",
         "speed.png",
+        "field.png",
+        "density.png",
     ];
     for name in pictures
         .into_iter()

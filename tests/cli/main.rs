@@ -59,6 +59,7 @@ mod pairs;
 mod paths;
 mod person;
 mod pictures;
+mod point_field;
 mod point_grid;
 mod points;
 mod presets;

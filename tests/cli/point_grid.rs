@@ -2,6 +2,8 @@
 
 use crate::person::{Folder, Ran};
 use std::fs;
+use std::io::{BufRead, BufReader};
+use std::process::{Command, Stdio};
 
 /// Points of a box of 4 by 3 by 2, none of them on a lattice, with a value that is linear in their places.
 fn table(count: u32) -> String {
@@ -211,4 +213,31 @@ fn what_makes_no_grid_is_refused_by_name() {
         .run("render p.csv --points-as grid --grid 1e-9 --stream -o q.png")
         .assert_refused(2, &["TiB"]);
     assert_eq!(folder.names(), ["line.csv", "p.csv", "three.csv"]);
+}
+
+#[test]
+fn it_is_told_how_far_the_grid_is_and_an_interrupt_leaves_no_file() {
+    let folder = folder();
+    // Some seconds of a core.
+    let words = "convert p.csv -o f.nrrd --grid 200x200x200 --interpolate idw --progress json";
+    let mut child = folder
+        .command(words)
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program runs");
+    let stderr = BufReader::new(child.stderr.take().expect("a pipe"));
+    let line = stderr
+        .lines()
+        .map_while(Result::ok)
+        .find(|line| line.contains("\"part\""));
+    let line: serde_json::Value = serde_json::from_str(&line.expect("a part")).expect("JSON");
+    assert_eq!(line["stage"], "interpolate");
+    let part = line["part"].as_f64().expect("a number");
+    assert!(part > 0.0 && part < 1.0, "{part}");
+    let kill = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(kill.expect("kill runs").success());
+    assert_eq!(child.wait().expect("an end").code(), Some(130));
+    assert_eq!(folder.names(), ["p.csv"]);
 }

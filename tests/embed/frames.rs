@@ -45,6 +45,7 @@ impl<'h> Ready<'h> {
             beside: &[],
             light: None,
             points: None,
+            field: None,
             sky: None,
             skip: stratavox::technique::Skip::Nothing,
             ring: &ring,

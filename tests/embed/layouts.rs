@@ -53,6 +53,7 @@ fn drawn_and_left_in(layout: vk::ImageLayout) {
         beside: &[],
         light: None,
         points: None,
+        field: None,
         sky: None,
         skip: stratavox::technique::Skip::Nothing,
         ring: &ring,

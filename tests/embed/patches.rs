@@ -53,6 +53,7 @@ fn patches_inside_the_hosts_rendering_are_the_picture_of_whole_slices() {
             beside: &[],
             light: None,
             points: None,
+            field: None,
             sky: None,
             skip,
             ring: &ring,

@@ -36,6 +36,7 @@ fn inputs<'a>(ring: &'a ParameterRing, there: &'a OnDevice, brick: usize) -> Inp
         beside: &[],
         light: None,
         points: None,
+        field: None,
         sky: None,
         skip: stratavox::technique::Skip::Nothing,
         ring,

@@ -91,6 +91,7 @@ fn drawn(device: &mut Headless, format: vk::Format, order: Order, slices: u32) -
         beside: &[],
         light: None,
         points: None,
+        field: None,
         sky: None,
         skip: stratavox::technique::Skip::Nothing,
         ring: &ring,

@@ -17,6 +17,7 @@ mod denoise;
 mod emission;
 mod extremes;
 mod fast_path;
+mod field;
 mod filters;
 mod formats;
 mod geometry;

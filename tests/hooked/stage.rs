@@ -81,6 +81,7 @@ impl Stage {
             beside: &[],
             light: None,
             points: None,
+            field: None,
             sky: None,
             skip: Skip::Nothing,
             ring: &ring,

@@ -124,6 +124,7 @@ mod picture_compare;
 mod picture_files;
 mod picture_hostile;
 mod picture_output;
+mod points_field;
 mod points_interpolate;
 mod public_api;
 mod shader_constants;

@@ -14,6 +14,7 @@ mod denoise;
 mod devices;
 mod empty_space;
 mod environment;
+mod field;
 mod gradient_filter;
 mod gradients;
 mod inlined;

@@ -1,9 +1,11 @@
 //! Scattered points as an input.
 
+use super::field::FieldWord;
 use super::numbers::positive;
 use super::{Error, InputFlags, PHANTOM, PointGrid, SceneFlags};
 use crate::cli::stdin::{self, STANDARD};
 use crate::format::points::{self, PointColumns, PointFile};
+use crate::points::FieldKernel;
 use crate::technique::Technique;
 use crate::volume::Limits;
 use clap::{Args, ValueEnum};
@@ -21,6 +23,8 @@ pub enum PointsWord {
     Spheres,
     /// A volume between them, by --interpolate
     Grid,
+    /// The field around them, by --field: rays are cast through the points themselves
+    Field,
 }
 
 /// The words, none of them filled in.
@@ -36,6 +40,16 @@ pub struct PointLookFlags {
     )]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub points_as: Option<PointsWord>,
+    /// The field of --points-as field, which this stands for: kernel, means of values by a kernel, or kernel,density, how many points,
+    /// or how much of their weight, there is on a volume; :R is the radius of the kernel, in world length, as heights are
+    /// drawn [default: kernel, R 2 mean distances of neighbours]
+    #[arg(
+        long,
+        value_name = "kernel[:R][,density]",
+        help_heading = "Scattered points"
+    )]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub field: Option<FieldWord>,
     /// How wide the largest sphere is, in pixels where the camera is turned to [default: 14]
     #[arg(long, value_parser = positive, value_name = "PX", help_heading = "Scattered points")]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -97,6 +111,17 @@ impl InputFlags {
     }
 }
 
+impl PointLookFlags {
+    /// What stands for a point, where the input is points.
+    fn word(&self) -> PointsWord {
+        let of_field = || self.field.map(|_| PointsWord::Field);
+        self.points_as.or_else(of_field).unwrap_or_default()
+    }
+}
+
+/// Samples per radius of a field: what the midpoint rule is off by is 5e-4 of the integral through a point.
+const FIELD_SAMPLES: f64 = 5.0;
+
 impl SceneFlags {
     /// Whether the words say how points look where there are some.
     pub fn check_point_look(&self) -> Result<(), Error> {
@@ -113,8 +138,20 @@ impl SceneFlags {
                 "add it",
             ));
         }
+        if look.field.is_some() && look.word() != PointsWord::Field {
+            return Err(Error::usage(
+                "--field needs --points-as field",
+                "leave one of them out",
+            ));
+        }
         // Of thumbnails the input is not known yet.
         let is_known = self.input.path.is_some();
+        if look.field.is_some() && is_known && !self.input.are_points() {
+            return Err(Error::usage(
+                "--field is for scattered points, and the input is a volume",
+                "leave it out",
+            ));
+        }
         if look.points_as.is_some() && is_known && !self.input.are_points() {
             return Err(Error::usage(
                 "--points-as is for scattered points, and the input is a volume",
@@ -134,12 +171,21 @@ impl SceneFlags {
         if !self.input.are_points() {
             return;
         }
-        match self.point_look.points_as.unwrap_or_default() {
+        match self.point_look.word() {
             PointsWord::Splats => {
                 self.sampling.of_points = true;
                 self.sampling.technique.get_or_insert(Technique::Splat);
             }
             PointsWord::Spheres => {}
+            PointsWord::Field => {
+                let FieldWord { radius, quantity } = self.point_look.field.unwrap_or_default();
+                self.sampling.field = Some(FieldKernel {
+                    // Until the points are read.
+                    radius: radius.unwrap_or(1.0),
+                    quantity,
+                });
+                self.sampling.samples_per_voxel.get_or_insert(FIELD_SAMPLES);
+            }
             PointsWord::Grid => {
                 self.input.on_grid = Some(Box::new(PointGrid {
                     flags: self.point_grid.clone(),

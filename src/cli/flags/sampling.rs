@@ -12,6 +12,7 @@ use super::{
 };
 use crate::{
     picture::ColorSpace,
+    points::FieldKernel,
     shaders::MAX_CLIP_PLANES,
     technique::{
         ClipPlane, DEFAULT_DIM, Filter, FilterBy, Jitter, Lattice, Mode, Order, Settings,
@@ -79,7 +80,8 @@ pub struct SamplingFlags {
     #[arg(long)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub order: Option<Order>,
-    /// Samples per smallest voxel spacing [default: 1; 2 in stills of composites under --look auto]
+    /// Samples per smallest voxel spacing [default: 1; 2 in stills of composites under --look auto], or per radius of --field
+    /// [default: 5]
     #[arg(long, value_name = "F", value_parser = positive)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub samples_per_voxel: Option<f64>,
@@ -146,6 +148,10 @@ pub struct SamplingFlags {
     #[arg(skip)]
     #[serde(skip)]
     pub of_points: bool,
+    /// The input is scattered points, and rays are cast through this field of them.
+    #[arg(skip)]
+    #[serde(skip)]
+    pub field: Option<FieldKernel>,
     /// As `stratavox conformance` draws: float targets, no early termination, filtering in the shader
     #[arg(long)]
     #[serde(skip_serializing_if = "std::ops::Not::not")]
@@ -180,6 +186,9 @@ const WARP: &str = "--technique shear-warp is for --mode composite, mip, minip, 
 /// What splats go with.
 const SPLATS: &str = "--technique splat is for --mode composite, mip, minip, average and xray, with a kernel (--splat-std) and \
                       sheets (--sheets) of its own: leave out the other flag, or draw a volume by --technique raycast";
+/// What rays through points go with.
+const FIELD: &str = "points are cast by rays, in --mode composite, mip, minip, average and xray; --points-as grid makes a volume of \
+                     them";
 
 /// What paths go with.
 const PATHS: &str = "--technique pathtrace is for --mode composite of one volume of numbers, by --filter linear and nearest, with lights \
@@ -188,6 +197,7 @@ const PATHS: &str = "--technique pathtrace is for --mode composite of one volume
 /// Whether settings have the ways to sample that are asked for.
 pub fn check_ways(settings: &Settings) -> Result<(), Error> {
     let hint = match settings.lattice {
+        _ if settings.field.is_some() => FIELD,
         _ if settings.is_half_angle() => HALF_ANGLE,
         _ if settings.technique.is_warped() => WARP,
         _ if settings.technique.splats() => SPLATS,
@@ -242,6 +252,7 @@ impl SamplingFlags {
             gradient_storage: Default::default(),
             dim: DEFAULT_DIM,
             splat: self.splat(depth),
+            field: self.field,
             path: Default::default(),
             single_scattering: None,
             ambient_occlusion: None,

@@ -29,7 +29,7 @@ use super::{
 use crate::{
     camera::Camera,
     offscreen::Stream,
-    points::Points,
+    points::{FieldKernel, Points},
     scene::{Beside, Channel},
     technique::{Filter, FilterBy, Mode, PerMode, Role, Settings},
     transfer::{Classified, Context, TransferFunction},
@@ -65,6 +65,8 @@ pub struct SceneInputs {
     overview: Option<Arc<Volume>>,
     /// Lines along the wind.
     lines: Option<DrawnLines>,
+    /// The field of points that rays are cast through, once the points are known.
+    field: Option<FieldKernel>,
 }
 
 #[derive(Debug)]
@@ -108,6 +110,7 @@ impl SceneInputs {
             stream: None,
             overview: None,
             lines: None,
+            field: None,
         }
     }
 
@@ -218,6 +221,9 @@ impl SceneInputs {
         check(scene, settings)?;
         if scene.sampling.of_points {
             return points::read(scene, settings.mode, progress);
+        }
+        if let Some(kernel) = scene.sampling.field {
+            return points::field(scene, settings.mode, kernel.quantity, progress);
         }
         if scene.points_are_spheres() {
             return points::spheres(scene, settings, progress);
@@ -342,6 +348,7 @@ impl SceneInputs {
             settings.filter = filter;
         }
         settings.per_mode = self.per_mode.clone();
+        settings.field = self.field;
         settings.filter_by = self.filter_by(scene, settings.filter_by);
         Ok(camera)
     }

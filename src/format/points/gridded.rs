@@ -3,11 +3,12 @@
 use super::PointFile;
 use crate::points::interpolate::{GridSize, Interpolation, Method, NoField, Options};
 use crate::volume::Grid;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 impl PointFile {
     /// The same file as the volume of an interpolation on a grid that takes at most `max_bytes`. Voxels without data are
-    /// NaN; what was chosen is among [`crate::volume::Header::notes`].
+    /// NaN; what was chosen is among [`crate::volume::Header::notes`]. They are made by
+    /// [`prepare`](crate::volume::Source::prepare), or when they are first read.
     ///
     /// # Errors
     /// [`NoField`] where there are too few points for the method, they lie on one line, the grid is too large, or a length
@@ -21,7 +22,6 @@ impl PointFile {
         let points = Arc::clone(&self.points);
         let field = Interpolation::new(&points, options)?;
         let grid = field.grid(size, max_bytes)?;
-        self.voxels = field.values_on(&grid);
         self.header.dims = grid.dims;
         self.header.world_from_voxel = grid.world_from_voxel;
         if options.method == Method::Density {
@@ -32,6 +32,8 @@ impl PointFile {
         self.header.variables.truncate(1);
         self.notes.extend(notes(&field, &grid, options));
         self.header.notes.clone_from(&self.notes);
+        self.voxels = OnceLock::new();
+        self.on_grid = Some((field, grid));
         Ok(self)
     }
 }

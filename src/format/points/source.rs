@@ -5,12 +5,13 @@ use super::quantity::without_unit;
 use crate::format::problem::{at, escape, invalid};
 use crate::format::request::wanted_count;
 use crate::points::Points;
+use crate::points::interpolate::Interpolation;
 use crate::volume::{
-    Format, Header, Limits, Piece, Problem, ReadError, Source, TimeComponent, VoxelBox, VoxelType,
-    Voxels,
+    Format, Grid, Header, Limits, Piece, Problem, ReadError, Source, TimeComponent, VoxelBox,
+    VoxelType, Voxels,
 };
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Scattered points out of a file. As a [`Source`] it is the volume of means of [`Points::binned`], whose voxels without
 /// a point are NaN, or that of [`Self::interpolated`].
@@ -20,7 +21,9 @@ pub struct PointFile {
     pub(super) header: Header,
     pub(super) notes: Vec<String>,
     pub(super) points: Arc<Points>,
-    pub(super) voxels: Vec<f32>,
+    pub(super) voxels: OnceLock<Vec<f32>>,
+    /// What these are made of when they are first wanted; `None`: they are there.
+    pub(super) on_grid: Option<(Interpolation, Grid)>,
     max_bytes: u64,
 }
 
@@ -85,7 +88,8 @@ impl PointFile {
             header,
             notes,
             points: Arc::new(points),
-            voxels,
+            voxels: OnceLock::from(voxels),
+            on_grid: None,
             max_bytes: limits.max_bytes,
         })
     }
@@ -93,6 +97,13 @@ impl PointFile {
     /// What a person should know of the points; [`Header::notes`] has also what that volume is.
     pub fn notes(&self) -> &[String] {
         &self.notes
+    }
+
+    fn voxels(&self, watch: &(dyn Fn(f64) + Sync)) -> &[f32] {
+        self.voxels.get_or_init(|| match &self.on_grid {
+            Some((field, grid)) => field.values_watched(grid, watch),
+            None => Vec::new(),
+        })
     }
 
     /// The points.
@@ -127,6 +138,10 @@ impl Source for PointFile {
         &self.header
     }
 
+    fn prepare(&self, watch: &(dyn Fn(f64) + Sync)) {
+        self.voxels(watch);
+    }
+
     fn reads_whole_rows(&self) -> bool {
         true
     }
@@ -138,12 +153,13 @@ impl Source for PointFile {
         let size = |n: u32| usize::try_from(n).unwrap_or(usize::MAX);
         let [nx, ny, _] = self.header.dims.map(size);
         let ([x0, y0, z0], [x1, y1, z1]) = (region.min.map(size), region.max.map(size));
+        let all = self.voxels(&|_| {});
         let mut voxels = Vec::with_capacity(count);
         for z in z0..z1 {
             for y in y0..y1 {
                 let row = z.saturating_mul(ny).saturating_add(y).saturating_mul(nx);
                 let wanted = row.saturating_add(x0)..row.saturating_add(x1);
-                voxels.extend_from_slice(self.voxels.get(wanted).unwrap_or_default());
+                voxels.extend_from_slice(all.get(wanted).unwrap_or_default());
             }
         }
         Ok(Piece::from(Voxels::F32(voxels)))

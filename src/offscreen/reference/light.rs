@@ -54,7 +54,7 @@ fn matter_of<'a, R: Real>(
     gradients: Option<&'a Volume>,
     grid: &'a Grid,
 ) -> Result<ReferenceRays<'a, R>, Error> {
-    let mut matter = ReferenceRays::new(scene, read, None, grid, InPixel::CENTER)?;
+    let mut matter = ReferenceRays::new(scene, read, None, None, grid, InPixel::CENTER)?;
     matter.gradients = gradients;
     let count = matter_volumes(scene).len();
     matter.volumes.truncate(count);

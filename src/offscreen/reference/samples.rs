@@ -42,7 +42,10 @@ impl<R: Real> Samples<R> for ReferenceRays<'_, R> {
     }
 
     fn value(&self, p: [R; 3]) -> Option<R> {
-        filtered(self.volumes[0], self.scene.settings.filter, p)
+        match self.field {
+            Some(field) => field.value(in_cells(&self.frame, p)),
+            None => filtered(self.volumes[0], self.scene.settings.filter, p),
+        }
     }
 
     fn value_in_slice(&self, axis: usize, slice: u32, p: [R; 3]) -> Option<R> {
@@ -74,6 +77,9 @@ impl<R: Real> Samples<R> for ReferenceRays<'_, R> {
     }
 
     fn material(&self, p: [R; 3], ray_direction: [R; 3]) -> Option<[R; 4]> {
+        if self.field.is_some() {
+            return self.value(p).map(|value| self.classify(value));
+        }
         let look = |volume: &_, filter, step| filtered(volume, filter, moved(p, step));
         self.mixed(look, p, ray_direction)
     }
@@ -131,6 +137,14 @@ impl<R: Real> Samples<R> for ReferenceRays<'_, R> {
     fn alike(&self) -> Option<&AlikeCells> {
         self.alike.as_ref()
     }
+}
+
+/// From voxel space to the cells of the field of points.
+fn in_cells<R: Real>(frame: &Frame, p: [R; 3]) -> [R; 3] {
+    frame.field_from_voxel.map(|row| {
+        let [x, y, z, w] = row.map(R::from_f32);
+        x * p[0] + y * p[1] + z * p[2] + w
+    })
 }
 
 pub(super) fn filtered<R: Real>(volume: &Volume, filter: Filter, p: [R; 3]) -> Option<R> {

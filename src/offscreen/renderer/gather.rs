@@ -90,6 +90,10 @@ impl Renderer<'_> {
             }
         }
         let points = match scene.beside {
+            Beside::Points(_) if scene.settings.field.is_some() => {
+                recordings = self.field_recordings(scene, &view, recordings[0])?;
+                None
+            }
             Beside::Points(points) => {
                 let seen = ViewPoints::new(&view, points)?;
                 let gpu = self.device.gpu();
@@ -115,6 +119,7 @@ impl Renderer<'_> {
             beside,
             light: self.light.get(),
             points: points.as_ref(),
+            field: self.field.get().map(|field| &field.on_device),
             sky,
             skip,
         };

@@ -80,6 +80,7 @@ impl<'v> Renderer<'v> {
             changes: 0,
             passes_done: [0, 1],
             behind: None,
+            field: Keyed::default(),
             path_ends: Ends::default(),
             path_sky: PathSky::default(),
             device,

@@ -247,6 +247,7 @@ impl<'v> Renderer<'v> {
                 beside: &[],
                 light: None,
                 points: None,
+                field: None,
                 sky: None,
                 skip,
             });

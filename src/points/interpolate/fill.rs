@@ -3,12 +3,18 @@
 use super::{Interpolation, Scratch};
 use crate::volume::{Grid, Problem, Rescale, Volume, Voxels};
 use glam::DVec3;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 impl Interpolation {
     /// The values at the centres of the voxels, x fastest; NaN where there are no data.
     pub fn values_on(&self, grid: &Grid) -> Vec<f32> {
-        self.values_by(grid, super::threads())
+        self.values_watched(grid, &|_| {})
+    }
+
+    /// The same, and tells after each row of voxels how much is done, 0 to 1, from several threads.
+    pub fn values_watched(&self, grid: &Grid, watch: &(dyn Fn(f64) + Sync)) -> Vec<f32> {
+        self.values_by(grid, super::threads(), watch)
     }
 
     /// The same as a volume, with a mask where there are no data.
@@ -25,12 +31,18 @@ impl Interpolation {
         )
     }
 
-    pub(super) fn values_by(&self, grid: &Grid, threads: usize) -> Vec<f32> {
+    pub(super) fn values_by(
+        &self,
+        grid: &Grid,
+        threads: usize,
+        watch: &(dyn Fn(f64) + Sync),
+    ) -> Vec<f32> {
         let [nx, ny, nz] = grid.dims.map(|n| n as usize);
         let mut values = vec![f32::NAN; nx * ny * nz];
         let frame_from_voxel = self.frame_from_world * grid.world_from_voxel.matrix3;
         let origin = self.frame_from_world * grid.world_from_voxel.translation;
         let step = frame_from_voxel.x_axis.length();
+        let (done, all) = (AtomicUsize::new(0), ny * nz);
         let rows = Mutex::new(values.chunks_mut(nx.max(1)).enumerate());
         let work = || {
             let mut scratch = Scratch::new(self);
@@ -46,6 +58,8 @@ impl Interpolation {
                         *value = found as f32;
                     }
                 }
+                let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+                watch(done as f64 / all as f64);
             }
         };
         std::thread::scope(|scope| {

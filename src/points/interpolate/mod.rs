@@ -338,6 +338,22 @@ fn threads() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
+/// The integral over space of Wendland's kernel of this radius.
+pub(super) fn kernel_integral(radius: f64) -> f64 {
+    density::integral(radius, false)
+}
+
+/// Mean distance of a point to its nearest neighbour at another place; `None` where all are at one.
+///
+/// # Panics
+/// Where there are 2^32 points or more.
+pub fn mean_distance_of(points: &Points) -> Option<f64> {
+    assert!(u32::try_from(points.len()).is_ok(), "fewer than 2^32");
+    let all = points.places.iter().map(|&place| (place, 0.0, 1.0));
+    let places = Distinct::of(all).places;
+    (places.len() > 1).then(|| mean_distance(&places, &Neighbours::new(&places)))
+}
+
 /// Over all places; there are two at least.
 fn mean_distance(places: &[DVec3], neighbours: &Neighbours) -> f64 {
     let mut nearest = Nearest::new(2);

@@ -39,7 +39,7 @@ fn any_number_of_threads_makes_the_same_bytes() {
             let grid = field
                 .grid(GridSize::Voxels([60, 9, 7]), 1 << 30)
                 .expect("a grid");
-            let values = field.values_by(&grid, threads);
+            let values = field.values_by(&grid, threads, &|_| {});
             values
                 .iter()
                 .map(|value| value.to_bits())

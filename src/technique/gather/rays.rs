@@ -6,6 +6,7 @@
 //!     rays       those tiles                                goes on in picture and layers
 //! ```
 
+use super::super::field;
 use super::super::projection::Projection;
 use super::super::raycast::Raycast;
 use super::super::{
@@ -24,7 +25,10 @@ pub(crate) const LAYERS: usize = 1;
 /// # Errors
 /// Where the device refuses.
 pub(in crate::technique) fn rays(desc: &GatherDesc) -> Result<Box<dyn Gather>, Error> {
-    let pass = RayPass::new(desc.gpu, desc.settings, desc.variant)?;
+    let pass = match desc.settings.field {
+        Some(_) => field::pass(desc)?,
+        None => RayPass::new(desc.gpu, desc.settings, desc.variant)?,
+    };
     Ok(Box::new(Rays::new(desc.gpu, pass)))
 }
 

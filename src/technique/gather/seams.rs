@@ -238,6 +238,7 @@ fn a_picture_goes_on_from_what_a_box_of_bricks_has_left() {
             beside: &[],
             light: None,
             points: None,
+            field: None,
             sky: None,
             skip: Skip::Nothing,
         };

@@ -153,17 +153,13 @@ impl Settings {
     /// [`Error::NotFor`].
     pub(crate) fn check_points(&self, are_points: bool) -> Result<(), Error> {
         let splats_points = self.technique == Technique::Splat && self.splat.of_points;
-        let (wanted, of, found) = match (are_points, splats_points) {
+        let (wanted, of, found) = match (are_points, splats_points || self.field.is_some()) {
             (true, false) => (
                 "drawing scattered points",
-                "splatting",
+                "splatting, or rays through their field",
                 format!("technique {}", self.technique),
             ),
-            (false, true) => (
-                "splatting of scattered points",
-                "points",
-                "a volume".to_owned(),
-            ),
+            (false, true) => ("drawing scattered points", "points", "a volume".to_owned()),
             _ => return Ok(()),
         };
         Err(Error::NotFor { wanted, of, found })

@@ -121,6 +121,10 @@ pub const FEATURES: &[Feature] = &[
     ),
     of(
         &[Input::Points],
+        feature("input", "scattered points as a field", "--points-as field"),
+    ),
+    of(
+        &[Input::Points],
         unseen(feature(
             "input",
             "scattered points on a grid",

@@ -26,6 +26,7 @@ fn a_host_records_eye_and_light_into_its_own_commands() {
         beside: &[],
         light: None,
         points: None,
+        field: None,
         sky: None,
         skip: stratavox::technique::Skip::Nothing,
         ring: &ring,

@@ -139,6 +139,7 @@ impl Ready {
                 beside: &[],
                 light: None,
                 points: None,
+                field: None,
                 sky: None,
                 skip: Skip::Nothing,
             })

@@ -6,7 +6,11 @@ use super::{Rule, no_meaning, not_built, of};
 pub const RULES: &[Rule] = &[
     // Brick by brick.
     of(
-        &["scattered points", "scattered points as spheres"],
+        &[
+            "scattered points",
+            "scattered points as spheres",
+            "scattered points as a field",
+        ],
         no_meaning("--stream is not for", "scattered points have no bricks"),
     ),
     not_built(
