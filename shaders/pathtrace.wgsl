@@ -277,7 +277,7 @@ fn step_by(walk: ptr<function, Walk>, u: f32) -> bool {
         (*walk).majorant = select(majorant_of(cell), 0.0, distance > 0);
         may_cross = distance == 0 && may_cross_in(cell);
     }
-    (*walk).levels = entered((*walk).levels, voxel, (*walk).t, may_cross);
+    (*walk).levels = entered((*walk).levels, voxel, (*walk).t, may_cross && (*walk).t < (*walk).end);
     reach = nearer_end((*walk).levels, (*walk).t, reach, (*walk).end);
     if (*walk).majorant <= 0.0 {
         walk_to(walk, reach);

@@ -81,7 +81,9 @@ fn moved(before: AmongLevels, voxel: Ray, start: f32, end: f32) -> AmongLevels {
         let roots = clamp(extremes(cubic), vec2(0.0), vec2(length));
         let ends = vec4(0.0, min(roots.x, roots.y), max(roots.x, roots.y), length);
         let values = cubic_at(cubic, ends);
-        let are_beyond = (values < vec4(low)) | (values >= vec4(high));
+        // Where the last surface was, rounding says on which side the value is.
+        let are_behind = vec4(before.rank == before.before) | (ends > vec4(0.0));
+        let are_beyond = are_behind & ((values < vec4(low)) | (values >= vec4(high)));
         if any(are_beyond) {
             // The first end beyond a level, and the one before it.
             let ending = select(select(select(3u, 2u, are_beyond.z), 1u, are_beyond.y), 0u, are_beyond.x);

@@ -92,6 +92,7 @@ impl<R: Real> AmongLevels<R> {
     /// From start to end, or to the first surface between: where it ends.
     pub fn step(&mut self, of: &impl Samples<R>, voxel: &Ray<R>, [start, end]: [R; 2]) -> R {
         let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));
+        let is_at_surface = self.has_crossed();
         self.before = self.rank;
         let Some(cell) = self.cell else {
             return end;
@@ -106,7 +107,7 @@ impl<R: Real> AmongLevels<R> {
                 None => rank_of(of.frame(), cubic.0[0]),
             };
             (self.rank, self.before) = (Some(rank), Some(rank));
-            if let Some((s, is_up)) = met(of.frame(), rank, cubic, end - start) {
+            if let Some((s, is_up)) = met(of.frame(), rank, is_at_surface, cubic, end - start) {
                 self.rank = Some(if is_up { rank + 1 } else { rank - 1 });
                 let part =
                     std::array::from_fn(|k| (place[k] + s * voxel.direction[k]).max(zero).min(one));
@@ -169,7 +170,13 @@ fn rank_of<R: Real>(frame: &Frame, value: R) -> usize {
 }
 
 /// How far away the first surface is within a length, and whether values rise through it.
-fn met<R: Real>(frame: &Frame, rank: usize, cubic: Cubic<R>, length: R) -> Option<(R, bool)> {
+fn met<R: Real>(
+    frame: &Frame,
+    rank: usize,
+    is_at_surface: bool,
+    cubic: Cubic<R>,
+    length: R,
+) -> Option<(R, bool)> {
     let zero = R::from_f64(0.0);
     let levels = &frame.level_values[..frame.level_count as usize];
     let level = |i: usize| levels.get(i).map(|level| R::from_f32(level[0]));
@@ -182,8 +189,11 @@ fn met<R: Real>(frame: &Frame, rank: usize, cubic: Cubic<R>, length: R) -> Optio
         _ => None,
     };
     let mut ends = ends.into_iter().enumerate();
-    let (i, (end, (level, is_up))) =
-        ends.find_map(|(i, s)| Some((i, (s, beyond(cubic.at(s))?))))?;
+    let (i, (end, (level, is_up))) = ends.find_map(|(i, s)| {
+        // Where the last surface was, rounding says on which side the value is.
+        let is_behind = !is_at_surface || s > zero;
+        Some((i, (s, beyond(cubic.at(s)).filter(|_| is_behind)?)))
+    })?;
     let near = [zero, zero, a.min(b), a.max(b)][i];
     Some((crossing(cubic, level, [near, end]), is_up))
 }

@@ -72,9 +72,16 @@ impl<R: Real> Walk<R> {
         let one = R::from_f64(1.0);
         let reach = match frame.level_count {
             0 => self.end,
+            _ if self.t >= self.end => {
+                self.levels = AmongLevels::from_rank(None);
+                self.end
+            }
             _ => self.levels.enter(of, &self.voxel, self.t).min(self.end),
         };
-        let t = self.t + minus_ln(one - u) / R::from_f32(frame.path_majorant);
+        let t = match frame.path_majorant > 0.0 {
+            true => self.t + minus_ln(one - u) / R::from_f32(frame.path_majorant),
+            false => reach,
+        };
         self.t = self.levels.step(of, &self.voxel, [self.t, t.min(reach)]);
         match t < reach {
             _ if self.levels.has_crossed() => Step::Surface,
