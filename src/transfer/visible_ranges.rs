@@ -157,7 +157,7 @@ impl VisibleRanges {
     }
 
     /// The same and single values, those of surfaces: a range shows one where it holds it.
-    pub fn with_values(mut self, values: impl Iterator<Item = f32>) -> Self {
+    pub(crate) fn with_values(mut self, values: impl Iterator<Item = f32>) -> Self {
         let reach = 0.0;
         let held = values.map(|value| ContourReach { value, reach });
         self.contours.extend(held);
