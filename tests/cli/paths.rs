@@ -351,10 +351,7 @@ fn solid_surfaces_change_the_picture_and_others_colours_are_refused() {
     for words in [
         "",
         "--iso 300",
-        "--iso 300 --iso-color red",
-        "--iso 300 --iso-opacity 0.5",
-        "--iso 300 --f0 0.5",
-        "--iso 0,300",
+        "--iso 300 --iso-opacity 0.5 --iso-color red --f0 0.5",
     ] {
         folder
             .run(&format!(
