@@ -4,8 +4,8 @@
 #              SwiftShader (fetched by apt; skipped by name where that cannot be); the suite judged by injected faults and by
 #              the CPU reference; what draws once more under the least limits; each barrier of the
 #              examples taken away; many devices one after the other; other operating systems
-# make sweep   all of what `make test` tries a share of: each filter, axis and random picture of the tests that draw many, each pair
-#              of features and each cut of a file; some two hours
+# make sweep   all of what `make test` tries a share of: each filter, axis and random picture of the tests that draw many, and each
+#              cut of a file; hours
 # make fresh   README's two commands, make test and make demo in a new clone without anything built or downloaded
 # make plain   what draws once more, without validation
 # make least   the same under the least limits that Vulkan allows

@@ -5,6 +5,7 @@
 //     light                 L += W p(c) E T                      T: product of 1 - P along the way (ratio tracking, Novak et al. 2014)
 //     it leaves             L += W sky
 //     matter shines         L += W E / majorant                  at each tentative collision
+//     a surface is met with P = its opacity                      T *= 1 - opacity
 //
 // Of three extinctions one majorant and one chance, by what they would take of the weights (Kutz et al. 2017):
 //
@@ -30,6 +31,7 @@
 #import surface
 #import sky
 #import lamp
+#import crossing_{levels}
 
 // Mean radiance of paths, and which part of them has met matter: of n paths behind b others
 //
@@ -53,6 +55,9 @@ const OF_SKY: u32 = 3u;
 const FEWEST_BOUNCES: u32 = 4u;
 const LEAST: f32 = 0.1;
 
+// Ways from a surface begin so far before it, in smallest spacings.
+const LEAVES_BY: f32 = 1e-3;
+
 struct Walk {
     world: Ray,
     voxel: Ray,
@@ -60,6 +65,7 @@ struct Walk {
     end: f32,
     // Of the collision that it is at.
     majorant: f32,
+    levels: AmongLevels,
 }
 
 struct Path {
@@ -85,6 +91,8 @@ struct Collision {
     through: vec3<f32>,
     // World length to where it comes from.
     reach: f32,
+    // Which side of surfaces it is on.
+    rank: i32,
 }
 
 @compute @workgroup_size(8, 8)
@@ -139,8 +147,14 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
                 path.radiance += path.weight * emission_at(value) / walk.majorant;
             }
         }
+        let is_crossed = has_crossed(walk.levels);
+        if is_crossed {
+            let level = frame.level_colors[crossed_level(walk.levels)];
+            chances = vec3(level.w);
+            color = level.xyz;
+        }
         let chance = chance_of(path.weight, chances);
-        let has_left = !is_tentative && walk.t >= walk.end;
+        let has_left = !is_tentative && !is_crossed && walk.t >= walk.end;
         if state == SHADOW {
             at.through *= 1.0 - chances;
             let most = max(at.through.x, max(at.through.y, at.through.z));
@@ -169,7 +183,14 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
                 let numbers = random_numbers(key);
                 at.place = walk.world.origin + walk.t * walk.world.direction;
                 at.direction = walk.world.direction;
-                at.normal = normal_at(place, at.direction, numbers.x);
+                at.rank = walk.levels.rank;
+                if is_crossed {
+                    at.normal = facing((frame.voxel_from_world * walk.levels.slope).xyz, at.direction);
+                    at.place += LEAVES_BY * frame.smallest_spacing * at.normal;
+                    at.rank = walk.levels.before;
+                } else {
+                    at.normal = normal_at(place, at.direction, numbers.x);
+                }
                 at.albedo = color * frame.path_albedo;
                 at.through = vec3(1.0);
                 if !is_coated(at) {
@@ -179,7 +200,7 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
                 let to_light = light_at(&at, numbers, key);
                 state = SCATTER;
                 if any(path.weight * at.light > vec3(0.0)) {
-                    walk = walk_along(Ray(at.place, to_light));
+                    walk = walk_from(at, to_light);
                     walk.end = min(walk.end, at.reach);
                     state = SHADOW;
                 }
@@ -195,7 +216,7 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
             path.weight *= next.weight;
             path.density = next.density;
             path.weight *= kept(path, numbers.x);
-            walk = walk_along(Ray(at.place, next.direction));
+            walk = walk_from(at, next.direction);
             state = select(NEXT, PATH, any(path.weight > vec3(0.0)));
         }
         if state == NEXT {
@@ -225,14 +246,22 @@ fn through_lens(ray: Ray, numbers: vec2<f32>) -> Ray {
 fn walk_along(world: Ray) -> Walk {
     let voxel = voxel_ray(world);
     let interval = domain_interval(world, voxel);
-    return Walk(world, voxel, interval.x, interval.y, frame.path_majorant);
+    return Walk(world, voxel, interval.x, interval.y, frame.path_majorant, from_rank(UNKNOWN));
 }
 
-// On to the next tentative collision, or to where the next cell begins or the domain ends. Distances of collisions have no
+// On from a collision, on the side of surfaces that it is on.
+fn walk_from(at: Collision, way: vec3<f32>) -> Walk {
+    var walk = walk_along(Ray(at.place, way));
+    walk.levels = from_rank(at.rank);
+    return walk;
+}
+
+// On to the next tentative collision, or to a surface, or to where the next cell begins or the domain ends. Distances of collisions have no
 // memory: in each piece of a ray they are drawn anew.
 fn step_by(walk: ptr<function, Walk>, u: f32) -> bool {
     let voxel = (*walk).voxel;
     var reach = (*walk).end;
+    var may_cross = true;
     if frame.cells.x != 0u {
         let in_cells = (voxel.origin + (*walk).t * voxel.direction - frame.cells_origin) / f32(CELL_VOXELS);
         let cell = vec3<i32>(clamp(in_cells, vec3(0.0), vec3<f32>(frame.cells) - 1.0));
@@ -246,14 +275,22 @@ fn step_by(walk: ptr<function, Walk>, u: f32) -> bool {
         // A little beyond, so that rounding leaves no ray where it is.
         reach = min(reach, max(leave, (*walk).t) + frame.smallest_spacing / 1024.0);
         (*walk).majorant = select(majorant_of(cell), 0.0, distance > 0);
+        may_cross = distance == 0 && may_cross_in(cell);
     }
+    (*walk).levels = entered((*walk).levels, voxel, (*walk).t, may_cross && (*walk).t < (*walk).end);
+    reach = nearer_end((*walk).levels, (*walk).t, reach, (*walk).end);
     if (*walk).majorant <= 0.0 {
-        (*walk).t = reach;
+        walk_to(walk, reach);
         return false;
     }
     let t = (*walk).t + minus_ln(1.0 - u) / (*walk).majorant;
-    (*walk).t = min(t, reach);
-    return t < reach;
+    walk_to(walk, min(t, reach));
+    return t < reach && !has_crossed((*walk).levels);
+}
+
+fn walk_to(walk: ptr<function, Walk>, end: f32) {
+    (*walk).levels = moved((*walk).levels, (*walk).voxel, (*walk).t, end);
+    (*walk).t = reached((*walk).levels, end);
 }
 
 // That a tentative collision is a real one: by what all colours would take of the weights.
@@ -280,7 +317,12 @@ fn normal_at(place: vec3<f32>, direction: vec3<f32>, u: f32) -> vec3<f32> {
     if steepness <= frame.flat_gradient || u >= 1.0 - exp(-frame.path_surface * steepness) {
         return vec3(0.0);
     }
-    let normal = gradient / steepness;
+    return facing(gradient, direction);
+}
+
+// Along a gradient, on the side that the path comes from.
+fn facing(gradient: vec3<f32>, direction: vec3<f32>) -> vec3<f32> {
+    let normal = gradient / sqrt(dot(gradient, gradient));
     return select(normal, -normal, dot(normal, direction) > 0.0);
 }
 

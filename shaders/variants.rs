@@ -42,7 +42,7 @@ impl Slot {
 pub const CONSTANTS: &[&str] = &[
     "software", "filter", "holes", "lattice", "cuts", "transfer", "end", "mode", "kernel",
     "operator", "blend", "output", "topology", "layers", "sheets", "take", "grids", "light",
-    "space", "matter",
+    "space", "matter", "levels",
 ];
 
 /// The name of an import with its slots filled. `{slot=word}` has that word where an entry has no such slot.
@@ -120,6 +120,7 @@ pub const SILENT: &[&str] = &[
     "between",
     "texels",
     "light_unhindered",
+    "no_levels",
 ];
 /// Who reads the parameters of slices: the fragments, or the vertices for them (`flat_varyings.rs`).
 const PARAMETERS: Slot = slot("parameters", &["uniform", "planes", "stack"]);
@@ -145,6 +146,8 @@ const SLAB_LATTICE: Slot = constant("lattice", &["ray", "planes"]);
 const ONE: Slot = slot("inputs", &["scalar", "scalar_gradient"]);
 /// With a gradient for no more than unhindered light and weights of opacity, by central differences.
 const LEAN: Slot = slot("inputs", &["shaded", "gradient_opacity"]);
+/// Whether paths meet surfaces of values.
+const LEVELS: Slot = constant("levels", &["no_levels", "levels"]);
 /// Light that is scattered once.
 const SCATTERED: Slot = slot("inputs", &["scattered"]);
 const SCALAR: Slot = slot("inputs", &["scalar"]);
@@ -572,8 +575,8 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         &[SHEETS, constant("mode", &["mip", "minip", "sum"]), HOLES],
     ),
     ("splat_points", &[TRANSFER]),
-    ("pathtrace", &[NARROW, HOLES, TRANSFER, TAPS]),
-    ("pathtrace", &[CORNERS, HOLES, STORED, SHARED]),
+    ("pathtrace", &[NARROW, HOLES, TRANSFER, TAPS, LEVELS]),
+    ("pathtrace", &[CORNERS, HOLES, STORED, SHARED, LEVELS]),
     (
         "splat_points_projection",
         &[constant("mode", &["mip", "minip", "sum"])],

@@ -3,8 +3,8 @@
 //
 //     f(s) = A0 + A1 s + A2 s^2 + A3 s^3
 //
-// which has its extremes where the ray enters or leaves the cell or where A1 + 2 A2 s + 3 A3 s^2 = 0 (Sakas,
-// Grimm and Savopoulos 1995). Everything of a cell follows from its index, so that bricks meet the same places.
+// which has its extremes where the ray enters or leaves the cell or between (cell_cubic.wgsl). Everything of a cell
+// follows from its index, so that bricks meet the same places.
 // CPU reference: src/technique/projection/exact.rs.
 
 #import ray
@@ -12,6 +12,7 @@
 #import brick
 #import drawn_tile
 #import filter_linear_fetch
+#import cell_cubic
 #import mask
 #import holes_{holes}
 #import mode_{mode}
@@ -19,12 +20,6 @@
 struct Segment {
     t: f32,
     length: f32,
-}
-
-// Codes at the lower corner of a cell and at the upper one along x, by y and z.
-struct Corners {
-    low: vec4<f32>,
-    high: vec4<f32>,
 }
 
 fn march(pixel: vec2<f32>, tile: RayTile, before: Accumulator) -> Accumulator {
@@ -79,7 +74,7 @@ fn with_cell(before: Accumulator, voxel: Ray, cell: vec3<i32>, first: f32, last:
         return before;
     }
     let corners = corners_of(at);
-    let roots = extremes(corners, start, voxel.direction);
+    let roots = extremes(cubic_along(corners, start, voxel.direction));
     let ends = vec4(first, first + min(roots.x, roots.y), first + max(roots.x, roots.y), last);
     var so_far = before;
     so_far.samples += 1.0;
@@ -87,7 +82,7 @@ fn with_cell(before: Accumulator, voxel: Ray, cell: vec3<i32>, first: f32, last:
         let t = ends[k];
         let place = voxel.origin + t * voxel.direction;
         if t >= first && t <= last && is_in_brick(place) {
-            let code = code_in(corners, clamp(place - 0.5 - vec3<f32>(cell), vec3(0.0), vec3(1.0)));
+            let code = mixed(corners, clamp(place - 0.5 - vec3<f32>(cell), vec3(0.0), vec3(1.0)));
             so_far = add(so_far, value_from_code(volume_coding(), code), Segment(t, 0.0));
         }
     }
@@ -120,42 +115,4 @@ fn corners_of(taps: Footprint) -> Corners {
 
 fn corner(x: i32, y: i32, z: i32) -> f32 {
     return decoded_at(volume, volume_coding(), vec3(x, y, z));
-}
-
-fn code_in(corners: Corners, part: vec3<f32>) -> f32 {
-    let x = corners.low + part.x * (corners.high - corners.low);
-    return lerp(lerp(x.x, x.y, part.y), lerp(x.z, x.w, part.y), part.z);
-}
-
-// Where the derivative along the ray is zero, from where it enters; -1 where it is not.
-fn extremes(corners: Corners, p: vec3<f32>, d: vec3<f32>) -> vec2<f32> {
-    let along_x = corners.high - corners.low;
-    // f = k + kx x + ky y + kz z + kxy x y + kyz y z + kzx z x + kxyz x y z
-    let kx = along_x.x;
-    let ky = corners.low.y - corners.low.x;
-    let kz = corners.low.z - corners.low.x;
-    let kxy = along_x.y - along_x.x;
-    let kzx = along_x.z - along_x.x;
-    let kyz = corners.low.w - corners.low.z - ky;
-    let kxyz = along_x.w - along_x.z - kxy;
-    let a1 = kx * d.x + ky * d.y + kz * d.z
-        + kxy * (p.x * d.y + p.y * d.x) + kyz * (p.y * d.z + p.z * d.y) + kzx * (p.z * d.x + p.x * d.z)
-        + kxyz * (p.x * p.y * d.z + p.y * p.z * d.x + p.z * p.x * d.y);
-    let a2 = kxy * d.x * d.y + kyz * d.y * d.z + kzx * d.z * d.x
-        + kxyz * (p.x * d.y * d.z + p.y * d.z * d.x + p.z * d.x * d.y);
-    let a3 = 3.0 * kxyz * d.x * d.y * d.z;
-    let inside = a2 * a2 - a3 * a1;
-    if inside < 0.0 {
-        return vec2(-1.0);
-    }
-    // The sum of equal signs: nothing cancels.
-    let sum = -(a2 + select(-sqrt(inside), sqrt(inside), a2 >= 0.0));
-    var roots = vec2(-1.0);
-    if sum != 0.0 {
-        roots.x = a1 / sum;
-    }
-    if a3 != 0.0 {
-        roots.y = sum / a3;
-    }
-    return roots;
 }

@@ -177,6 +177,8 @@ pub struct ShaderVariant {
     pub is_hindered: bool,
     /// Whether matter scatters light once.
     pub is_scattered: bool,
+    /// Whether paths meet surfaces of values.
+    pub has_levels: bool,
     /// Rays leave what lies beside the picture: depth, value, samples, and what bricks behind go on with.
     pub writes_layers: bool,
 }
@@ -281,6 +283,7 @@ impl ShaderVariant {
                 && settings.wants_light_volume()
                 && settings.mode == Mode::Composite,
             is_scattered: settings.single_scattering.is_some(),
+            has_levels: settings.has_solid_levels(),
             writes_layers: true,
         }
     }

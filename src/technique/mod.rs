@@ -3,6 +3,7 @@
 mod accumulation;
 mod alike_cells;
 pub mod blend;
+mod cell_cubic;
 mod clip_rows;
 mod compatibility;
 #[doc(hidden)]

@@ -22,7 +22,8 @@ pub struct PerMode {
     pub depth_cue: f64,
     /// [`Mode::Mip`] and [`Mode::Minip`]: the extreme of the trilinear field itself, not of samples of it.
     pub exact_maximum: bool,
-    /// [`Mode::Iso`]: 1 to [`MAX_LEVELS`] surfaces, in any order.
+    /// [`Mode::Iso`]: 1 to [`MAX_LEVELS`] surfaces, in any order. In composites of paths
+    /// ([`Technique::Pathtrace`](super::Technique::Pathtrace)) up to so many solid ones, that light meets.
     pub levels: Vec<Level>,
 }
 
@@ -82,20 +83,22 @@ impl PerMode {
                 let is_right = attenuation >= 0.0 && attenuation.is_finite();
                 Error::unless(is_right, "the attenuation", "0 or more", attenuation)
             }
-            Mode::Iso => {
-                let (found, limit) = (self.levels.len(), MAX_LEVELS as usize);
-                if !(1..=limit).contains(&found) {
-                    return Err(Error::LevelCount { found, limit });
-                }
-                self.levels.iter().try_for_each(|level| {
-                    let Level { value, opacity, .. } = *level;
-                    let (is_value, is_share) = (value.is_finite(), (0.0..=1.0).contains(&opacity));
-                    Error::unless(is_value, "the value of a surface", "a number", value)?;
-                    Error::unless(is_share, "the opacity of a surface", "0 to 1", opacity)
-                })
-            }
+            Mode::Iso => self.check_levels(),
             _ => Ok(()),
         }
+    }
+
+    fn check_levels(&self) -> Result<(), Error> {
+        let (found, limit) = (self.levels.len(), MAX_LEVELS as usize);
+        if !(1..=limit).contains(&found) {
+            return Err(Error::LevelCount { found, limit });
+        }
+        self.levels.iter().try_for_each(|level| {
+            let Level { value, opacity, .. } = *level;
+            let (is_value, is_share) = (value.is_finite(), (0.0..=1.0).contains(&opacity));
+            Error::unless(is_value, "the value of a surface", "a number", value)?;
+            Error::unless(is_share, "the opacity of a surface", "0 to 1", opacity)
+        })
     }
 }
 
@@ -117,6 +120,9 @@ impl Settings {
             "0 to 1",
             self.dim,
         )?;
+        if self.has_solid_levels() {
+            self.per_mode.check_levels()?;
+        }
         self.per_mode.check(self.mode)
     }
 

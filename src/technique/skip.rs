@@ -113,6 +113,10 @@ impl Settings {
             (mode, _) if mode.projects_one_place() && !self.per_mode.exact_maximum => {
                 Skippable::Exceeded
             }
+            (Mode::Composite, Some(function)) if self.has_solid_levels() => {
+                let levels = self.per_mode.levels.iter().map(|level| level.value as f32);
+                unseen(seen_in(function).with_values(levels))
+            }
             (Mode::Composite | Mode::Mida, Some(function)) => unseen(seen_in(function)),
             _ => Skippable::Nothing,
         }

@@ -156,6 +156,14 @@ impl VisibleRanges {
         Self::of_cells(low as f32, scale as f32, &is_seen)
     }
 
+    /// The same and single values, those of surfaces: a range shows one where it holds it.
+    pub(crate) fn with_values(mut self, values: impl Iterator<Item = f32>) -> Self {
+        let reach = 0.0;
+        let held = values.map(|value| ContourReach { value, reach });
+        self.contours.extend(held);
+        self
+    }
+
     fn of_cells(first: f32, scale: f32, is_seen: &[bool]) -> Self {
         let mut next = vec![is_seen.len() as u32; is_seen.len()];
         let mut nearest = is_seen.len() as u32;

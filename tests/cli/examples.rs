@@ -323,9 +323,10 @@ fn every_command_of_the_page_of_weather_runs() {
 #[test]
 fn every_command_of_the_page_of_path_tracing_runs() {
     let (folder, _, lines) = run_page("docs/pathtrace.md");
-    assert_eq!(lines, 8);
+    assert_eq!(lines, 9);
     for name in [
         "head.png",
+        "bone.png",
         "point.png",
         "lit.png",
         "once.png",

@@ -342,3 +342,37 @@ fn an_interrupt_writes_the_picture_of_the_paths_that_there_are() {
         let _ = fs::remove_file(folder.path("a.png"));
     }
 }
+
+#[test]
+fn solid_surfaces_change_the_picture_and_others_colours_are_refused() {
+    let folder = Folder::new();
+    let of_paths = "render phantom:head,n=24 --technique pathtrace --light 1,-1,1";
+    let mut seen = Vec::new();
+    for words in [
+        "",
+        "--iso 300",
+        "--iso 300 --iso-opacity 0.5 --iso-color red --f0 0.5",
+    ] {
+        folder
+            .run(&format!(
+                "{of_paths} {words} -o a.png --save-scene s.json {SMALL}"
+            ))
+            .assert_done();
+        folder
+            .run("render --scene s.json -o b.png --force")
+            .assert_done();
+        let [one, again] =
+            ["a.png", "b.png"].map(|name| fs::read(folder.path(name)).expect("a file"));
+        assert!(one == again, "{words}");
+        assert!(!seen.contains(&one), "{words}");
+        seen.push(one);
+    }
+    for (words, wanted) in [
+        ("--iso-color-by vapor", "--iso-color-by is for --mode iso"),
+        ("--iso-opacity 0.5", "--iso names 0"),
+        ("--iso 1,2,3,4,5,6,7,8,9", "at most 8"),
+    ] {
+        let refused = folder.run(&format!("{of_paths} {words} -o c.png {SMALL}"));
+        refused.assert_refused(2, &[wanted]);
+    }
+}

@@ -138,7 +138,7 @@ pub const ANSWERS: &[(&str, Fault, &str)] = &[
     (
         "the extreme of a cell is one of its ends",
         Shader(
-            "lib/march_cells.wgsl",
+            "lib/cell_cubic.wgsl",
             "roots.x = a1 / sum;",
             "roots.x = -1.0;",
         ),

@@ -18,15 +18,16 @@ use serde::{Deserialize, Serialize};
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LevelFlags {
-    /// iso: the values of which surfaces are drawn [default: by the values]
+    /// iso: the values of which surfaces are drawn [default: by the values]; --technique pathtrace: solid surfaces that light
+    /// meets, in matter [default: none]
     #[arg(long, value_name = "VALUE,...", value_delimiter = ',', value_parser = super::finite, allow_hyphen_values = true, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub iso: Vec<f64>,
-    /// iso: the colour of each value, a name, #hex or R:G:B [default: by --tf, --preset or --window, else light ones]
+    /// iso, pathtrace: the colour of each value, a name, #hex or R:G:B [default: by --tf, --preset or --window, else light ones]
     #[arg(long, value_name = "COLOR,...", value_delimiter = ',', help_heading = HEADING)]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub iso_color: Vec<ColorWord>,
-    /// iso: the opacity of each value, 0 to 1 [default: 1 for the last, 0.25 for those before it]
+    /// iso, pathtrace: the opacity of each value, 0 to 1 [default: 1 for the last, 0.25 for those before it]
     #[arg(long, value_name = "A,...", value_delimiter = ',', value_parser = super::finite, allow_hyphen_values = true, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub iso_opacity: Vec<f64>,

@@ -302,7 +302,7 @@ impl SceneFlags {
         };
         let topics = [
             self.sampling.idle(),
-            self.modes.idle(mode),
+            self.modes.idle(mode, self.traces_paths()),
             of_light,
             self.gradient.idle(self.may_have_gradients()),
             self.camera.idle(self.section.section.is_some()),

@@ -51,6 +51,12 @@ impl ModeFlags {
         };
         asked.check_mode().map_err(refused)?;
         self.levels.check()?;
+        if settings.technique.traces_paths() && self.levels.iso_color_by.is_some() {
+            return Err(Error::usage(
+                "--iso-color-by is for --mode iso: paths go through one volume of numbers",
+                "--iso-color says what colours surfaces have in --technique pathtrace",
+            ));
+        }
         if mode == Mode::Iso {
             return Ok(());
         }
@@ -141,13 +147,17 @@ impl ModeFlags {
             Mode::Iso => {
                 (per_mode.levels, note) = self.levels.levels(function, summary)?;
             }
+            // Those that paths meet; others do not look at them.
+            Mode::Composite if !self.levels.iso.is_empty() => {
+                (per_mode.levels, note) = self.levels.levels(None, summary)?;
+            }
             _ => {}
         }
         Ok((per_mode, note))
     }
 
     /// Flags that change nothing in this mode, a sentence each.
-    pub fn idle(&self, mode: Mode) -> Vec<&'static str> {
+    pub fn idle(&self, mode: Mode, traces_paths: bool) -> Vec<&'static str> {
         let given = [
             (
                 self.lmip_threshold,
@@ -166,8 +176,10 @@ impl ModeFlags {
             ),
         ];
         let mut notes = Vec::new();
-        if !self.levels.say_nothing() && mode != Mode::Iso {
-            notes.push("--iso and its colours have no effect without --mode iso");
+        if !self.levels.say_nothing() && mode != Mode::Iso && !traces_paths {
+            notes.push(
+                "--iso and its colours have no effect without --mode iso or --technique pathtrace",
+            );
         }
         let idle = given
             .into_iter()
@@ -285,8 +297,8 @@ mod tests {
         };
         let text = refused(&gamma, Technique::Raycast, Mode::Mida);
         assert_eq!(text, "the gamma of MIDA is 1.5, wanted -1 to 1");
-        assert_eq!(gamma.idle(Mode::Mip).len(), 1);
-        assert!(gamma.idle(Mode::Mida).is_empty());
+        assert_eq!(gamma.idle(Mode::Mip, false).len(), 1);
+        assert!(gamma.idle(Mode::Mida, false).is_empty());
         let cue = ModeFlags {
             depth_cue: Some(0.5),
             ..ModeFlags::default()

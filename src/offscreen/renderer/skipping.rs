@@ -346,7 +346,9 @@ pub(super) fn wanted(scene: &Scene) -> Option<(Skippable, Halo)> {
     };
     let halo = scene.view(&scene.volume.grid(), [0.0; 2]).halo()?;
     let halo = match &wanted {
-        Skippable::Unseen(seen) if !seen.contours.is_empty() => halo.of_gradients(),
+        Skippable::Unseen(seen) if seen.contours.iter().any(|c| c.reach > 0.0) => {
+            halo.of_gradients()
+        }
         _ => halo,
     };
     (wanted != Skippable::Nothing).then_some((wanted, halo))

@@ -10,6 +10,7 @@
 mod denoise;
 mod elementary;
 mod lamp;
+mod levels;
 mod majorants;
 mod phase;
 mod random;
@@ -153,7 +154,14 @@ fn gather(desc: &GatherDesc) -> Result<Box<dyn Gather>, gpu::Error> {
         kept @ ("points" | "stored") => kept,
         _ => "table",
     };
-    let name = format!("pathtrace.{}.{}.{transfer}", variant.filter, variant.holes);
+    let levels = match variant.has_levels {
+        true => ".levels",
+        false => "",
+    };
+    let name = format!(
+        "pathtrace.{}.{}.{transfer}{levels}",
+        variant.filter, variant.holes
+    );
     Ok(rays_of(desc.gpu, RayPass::picture_of(desc.gpu, &name)?))
 }
 

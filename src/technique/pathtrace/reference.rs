@@ -3,6 +3,7 @@
 use super::SkyPicture;
 use super::elementary::{around, minus_ln, turned};
 use super::lamp::{is_lamp, light_of_lamp};
+use super::levels::AmongLevels;
 use super::phase::{phase_cosine, phase_value};
 use super::random::random_numbers;
 use super::surface::{reflected, reflection, reflection_density};
@@ -19,6 +20,8 @@ const OF_SKY: u32 = 3;
 /// Behind so many bounces, weights under `LEAST` end by chance.
 const FEWEST_BOUNCES: u32 = 4;
 const LEAST: f64 = 0.1;
+/// Ways from a surface begin so far before it, in smallest spacings.
+const LEAVES_BY: f64 = 1e-3;
 
 /// The mean of the paths of a pixel.
 pub(crate) fn pixel<R: Real>(of: &impl Samples<R>, pixel: [R; 2]) -> Gathered<R> {
@@ -46,10 +49,12 @@ struct Walk<R> {
     voxel: Ray<R>,
     t: R,
     end: R,
+    levels: AmongLevels<R>,
 }
 
 impl<R: Real> Walk<R> {
-    fn along(frame: &Frame, world: Ray<R>) -> Self {
+    /// From a place that has so many levels at or under it.
+    fn along(frame: &Frame, world: Ray<R>, rank: Option<usize>) -> Self {
         let voxel = voxel_ray(frame, &world);
         let [t, end] = domain_interval(frame, &world, &voxel);
         Self {
@@ -57,16 +62,42 @@ impl<R: Real> Walk<R> {
             voxel,
             t,
             end,
+            levels: AmongLevels::from_rank(rank),
         }
     }
 
-    /// On to the next tentative collision, or to where the domain ends.
-    fn step(&mut self, frame: &Frame, u: R) -> bool {
+    /// On to the next tentative collision, or to a surface, or to where the next cell begins or the domain ends.
+    fn step(&mut self, of: &impl Samples<R>, u: R) -> Step {
+        let frame = of.frame();
         let one = R::from_f64(1.0);
-        let t = self.t + minus_ln(one - u) / R::from_f32(frame.path_majorant);
-        self.t = t.min(self.end);
-        t < self.end
+        let reach = match frame.level_count {
+            0 => self.end,
+            _ if self.t >= self.end => {
+                self.levels = AmongLevels::from_rank(None);
+                self.end
+            }
+            _ => self.levels.enter(of, &self.voxel, self.t).min(self.end),
+        };
+        let t = match frame.path_majorant > 0.0 {
+            true => self.t + minus_ln(one - u) / R::from_f32(frame.path_majorant),
+            false => reach,
+        };
+        self.t = self.levels.step(of, &self.voxel, [self.t, t.min(reach)]);
+        match t < reach {
+            _ if self.levels.has_crossed() => Step::Surface,
+            true => Step::Tentative,
+            false if self.t >= self.end => Step::Left,
+            false => Step::On,
+        }
     }
+}
+
+/// What a step of a walk ends at.
+enum Step {
+    On,
+    Tentative,
+    Surface,
+    Left,
 }
 
 struct Path<R> {
@@ -86,7 +117,7 @@ impl<R: Real> Path<R> {
         let [x, y, u, v] = random_numbers::<R>(key);
         let [across, down] = corner.map(|n| R::from_f64(n.into()));
         let ray = pixel_ray(frame, [across + x, down + y]);
-        let mut walk = Walk::along(frame, through_lens(frame, ray, [u, v]));
+        let mut walk = Walk::along(frame, through_lens(frame, ray, [u, v]), None);
         let mut path = Self {
             weight: [one; 3],
             radiance: [zero; 3],
@@ -107,11 +138,20 @@ impl<R: Real> Path<R> {
             let albedo = color.map(|c| c * albedo);
             key[2] += OF_COLLISION;
             let numbers = random_numbers::<R>(key);
-            let from = walk.world.at(walk.t);
+            let incoming = walk.world.direction;
+            let normal = match walk.levels.has_crossed() {
+                true => Some(walk.levels.normal(frame, incoming)),
+                false => normal_at(of, place, incoming, numbers[0]),
+            };
+            let (mut from, rank) = (walk.world.at(walk.t), walk.levels.before);
+            if let (true, Some(normal)) = (walk.levels.has_crossed(), normal) {
+                let by = R::from_f64(LEAVES_BY) * R::from_f32(frame.smallest_spacing);
+                from = add(from, scale(normal, by));
+            }
             let at = Collision {
                 place: from,
-                incoming: walk.world.direction,
-                normal: normal_at(of, place, walk.world.direction, numbers[0]),
+                incoming,
+                normal,
                 albedo,
                 sky: of.settings().path.sky_picture.as_ref(),
             };
@@ -125,7 +165,7 @@ impl<R: Real> Path<R> {
                     origin: from,
                     direction: way,
                 };
-                let mut walk = Walk::along(frame, way);
+                let mut walk = Walk::along(frame, way, rank);
                 walk.end = walk.end.min(reach);
                 let through = path.through(of, walk, &mut key);
                 let brought = times(times(path.weight, light), through);
@@ -146,7 +186,7 @@ impl<R: Real> Path<R> {
                 origin: from,
                 direction,
             };
-            walk = Walk::along(frame, next);
+            walk = Walk::along(frame, next, rank);
         }
         let sky = path.sky(of, walk.world.direction);
         path.radiance = std::array::from_fn(|c| path.radiance[c] + path.weight[c] * sky[c]);
@@ -191,15 +231,14 @@ impl<R: Real> Path<R> {
     ) -> Option<([R; 3], [R; 3])> {
         loop {
             let [u, v, ..] = self.draw(key);
-            if !walk.step(of.frame(), u) {
-                return None;
-            }
-            let place = walk.voxel.at(walk.t);
+            let Some((found, place)) = Matter::behind(of, walk, u)? else {
+                continue;
+            };
             let Matter {
                 color,
                 chances,
                 shine,
-            } = Matter::at(of, place);
+            } = found;
             self.radiance = add(self.radiance, times(self.weight, shine));
             let chance = self.chance(of.frame(), chances);
             let one = R::from_f64(1.0);
@@ -233,10 +272,12 @@ impl<R: Real> Path<R> {
         let mut through = [one; 3];
         loop {
             let [u, v, ..] = self.draw(key);
-            if !walk.step(of.frame(), u) {
+            let Some(found) = Matter::behind(of, &mut walk, u) else {
                 return through;
-            }
-            let Matter { chances, .. } = Matter::at(of, walk.voxel.at(walk.t));
+            };
+            let Some((Matter { chances, .. }, _)) = found else {
+                continue;
+            };
             through = times(through, chances.map(|c| one - c));
             let most = through[0].max(through[1].max(through[2]));
             if most < least {
@@ -281,6 +322,28 @@ struct Matter<R> {
 }
 
 impl<R: Real> Matter<R> {
+    /// A step of a walk on, and what is found where it ends (voxel space): nothing where that is no more than the end of a
+    /// cell. `None`: the walk has left.
+    fn behind(of: &impl Samples<R>, walk: &mut Walk<R>, u: R) -> Option<Option<(Self, [R; 3])>> {
+        let step = walk.step(of, u);
+        let place = walk.voxel.at(walk.t);
+        match step {
+            Step::Left => None,
+            Step::On => Some(None),
+            Step::Tentative => Some(Some((Self::at(of, place), place))),
+            Step::Surface => Some(Some((Self::of_surface(of.frame(), walk)?, place))),
+        }
+    }
+
+    fn of_surface(frame: &Frame, walk: &Walk<R>) -> Option<Self> {
+        let [r, g, b, opacity] = walk.levels.surface(frame)?;
+        Some(Self {
+            color: [r, g, b],
+            chances: [opacity; 3],
+            shine: [R::from_f64(0.0); 3],
+        })
+    }
+
     /// In voxel space.
     fn at(of: &impl Samples<R>, place: [R; 3]) -> Self {
         let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));

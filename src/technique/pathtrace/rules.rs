@@ -64,6 +64,13 @@ impl Settings {
         self.path.check()
     }
 
+    /// Whether paths meet surfaces of values ([`PerMode::levels`](crate::technique::PerMode)).
+    pub(in crate::technique) fn has_solid_levels(&self) -> bool {
+        self.technique.traces_paths()
+            && self.mode == Mode::Composite
+            && !self.per_mode.levels.is_empty()
+    }
+
     /// Whether a camera has what a lens needs.
     ///
     /// # Errors

@@ -14,6 +14,7 @@ use crate::ray::{Ray, domain_interval, pixel_ray, voxel_ray};
 use crate::real::Real;
 use crate::shaders::Frame;
 use crate::technique::Mode;
+use crate::technique::cell_cubic::{Cubic, mixed};
 
 /// What one ray projects, and how many cells it looked at. `voxel_at` gives the value of a voxel, `None` for no data.
 pub fn project_exactly<R: Real>(
@@ -100,49 +101,13 @@ fn with_cell<R: Real>(
             None => return false,
         }
     }
-    let [a, b] = extremes(&corners, start, voxel.direction);
+    let [a, b] = Cubic::along(&corners, start, voxel.direction).extremes();
     for t in [first, first + a.min(b), first + a.max(b), last] {
         if t >= first && t <= last {
-            let [x, y, z] = in_cell(t).map(|p| p.max(zero).min(one));
-            let row = |i: usize| corners[i].lerp(corners[i + 1], x);
-            let value = row(0).lerp(row(2), y).lerp(row(4).lerp(row(6), y), z);
+            let value = mixed(&corners, in_cell(t).map(|p| p.max(zero).min(one)));
             // Of extremes there is no last one.
             let _goes_on = so_far.add(frame, mode, value, Segment { t, length: zero });
         }
     }
     true
-}
-
-/// Where the derivative along the ray is zero, from where it enters; -1 where it is not.
-fn extremes<R: Real>(c: &[R; 8], p: [R; 3], d: [R; 3]) -> [R; 2] {
-    let zero = R::from_f64(0.0);
-    let none = R::from_f64(-1.0);
-    // f = k + kx x + ky y + kz z + kxy x y + kyz y z + kzx z x + kxyz x y z
-    let (kx, ky, kz) = (c[1] - c[0], c[2] - c[0], c[4] - c[0]);
-    let (kxy, kzx) = (c[3] - c[2] - kx, c[5] - c[4] - kx);
-    let kyz = c[6] - c[4] - ky;
-    let kxyz = c[7] - c[6] - (c[5] - c[4]) - kxy;
-    let a1 = kx * d[0]
-        + ky * d[1]
-        + kz * d[2]
-        + kxy * (p[0] * d[1] + p[1] * d[0])
-        + kyz * (p[1] * d[2] + p[2] * d[1])
-        + kzx * (p[2] * d[0] + p[0] * d[2])
-        + kxyz * (p[0] * p[1] * d[2] + p[1] * p[2] * d[0] + p[2] * p[0] * d[1]);
-    let a2 = kxy * d[0] * d[1]
-        + kyz * d[1] * d[2]
-        + kzx * d[2] * d[0]
-        + kxyz * (p[0] * d[1] * d[2] + p[1] * d[2] * d[0] + p[2] * d[0] * d[1]);
-    let a3 = R::from_f64(3.0) * kxyz * d[0] * d[1] * d[2];
-    let inside = a2 * a2 - a3 * a1;
-    if inside < zero {
-        return [none; 2];
-    }
-    // The sum of equal signs: nothing cancels.
-    let root = inside.sqrt();
-    let sum = -(a2 + if a2 >= zero { root } else { -root });
-    [
-        if sum == zero { none } else { a1 / sum },
-        if a3 == zero { none } else { sum / a3 },
-    ]
 }

@@ -2,6 +2,7 @@
 //! for ever. SE: the standard error of a mean.
 
 mod camera;
+mod isosurfaces;
 mod lamps;
 pub mod medium;
 mod noise;

@@ -1,0 +1,3 @@
+// The corners of a cell, where the sampler filters.
+
+#import cell_corners_texels
