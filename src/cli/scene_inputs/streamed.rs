@@ -28,6 +28,7 @@ pub fn is_wanted(
             Some("--with, --labels and what else is seen together with a volume")
         }
         () if scene.denoise.is_some() => Some("--denoise"),
+        () if scene.points_are_spheres() || settings.field.is_some() => Some(POINTS),
         () if !settings.technique.streams() => {
             Some("--technique slices-3d, slices-2d, shear-warp, splat and pathtrace")
         }
@@ -71,6 +72,10 @@ pub fn is_wanted(
             let message = format!("--stream is not for {AS_A_WHOLE}");
             Err(in_no_parts(source, message, true))
         }
+        Some(POINTS) => Err(Error::usage(
+            format!("--stream is not for {POINTS}"),
+            "leave it out: points are read whole",
+        )),
         Some(what) => Err(Error::usage(
             format!("--stream is not for {what}"),
             "--fit draws a reduced volume that fits into memory",
@@ -78,6 +83,7 @@ pub fn is_wanted(
     }
 }
 
+const POINTS: &str = "scattered points";
 const AS_A_WHOLE: &str = "a file that is compressed as a whole";
 
 /// Says which command makes bricks of the file.

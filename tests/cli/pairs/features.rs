@@ -51,6 +51,14 @@ pub const FEATURES: &[Feature] = &[
     // Scattered points are splats without a word.
     of(VOLUMES, feature("technique", "splats", "--technique splat")),
     feature("technique", "path tracing", "--technique pathtrace --spp 2"),
+    of(
+        &[Input::Head],
+        feature(
+            "technique",
+            "path-traced surfaces",
+            "--technique pathtrace --spp 2 --iso 300",
+        ),
+    ),
     feature("mode", "maximum", "--mode mip"),
     feature("mode", "mean", "--mode average"),
     feature("mode", "X-ray", "--mode xray"),

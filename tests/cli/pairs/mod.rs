@@ -64,7 +64,8 @@ fn every_pair_is_drawn_or_refused_for_a_reason() {
 #[test]
 #[ignore = "writes docs/pairs.md: make pairs"]
 fn write_the_page() {
-    let found = outcomes(|_, _| false);
+    let kept = std::fs::read_to_string(PAGE).expect("docs/pairs.md"); // TEMP
+    let found = outcomes(|a, b| page::says_drawn(&kept, a, b)); // TEMP
     std::fs::write(PAGE, page::page(&found)).expect("docs/pairs.md");
     check(&found);
 }

@@ -12,7 +12,7 @@ const HEAD: &str = "# Pairs of features
 
 Every pair of features of the command line: whether it is drawn, and why not. Printed by `make pairs`, which runs the program for
 each pair on a volume of 20^3 voxels; `tests/cli/pairs` holds this page against what the program does, of pairs that are drawn for one of
-three, and wants that a picture is not empty and that both features change it. [matrix.md](matrix.md) has every feature in every technique, mode and filter.
+eight, and wants that a picture is not empty and that both features change it. [matrix.md](matrix.md) has every feature in every technique, mode and filter.
 
 What holds without a flag is no feature: ray casting, composites, the linear filter and perspective are in all pairs without a flag
 for them. The mode `minip` goes with what `mip` goes with, and `attenuated-mip` with what `lmip` goes with.
@@ -75,11 +75,21 @@ pub fn page(found: &[Vec<Outcome>]) -> String {
     text
 }
 
-/// Whether the page says of a pair that it is drawn as it stands.
+/// Whether the page says of a pair that it is drawn as it stands. Features are found by their names: the page may be older than
+/// their numbers.
 pub fn says_drawn(page: &str, first: usize, second: usize) -> bool {
-    let begin = format!("| {} {} | ", first + 1, FEATURES[first].name);
-    let row = page.lines().find_map(|line| line.strip_prefix(&begin));
-    row.and_then(|row| row.split(" | ").nth(second)) == Some("+")
+    let row_of = |line: &str| -> Option<(usize, String, Vec<String>)> {
+        let mut cells = line.strip_prefix("| ")?.split(" | ");
+        let (number, name) = cells.next()?.split_once(' ')?;
+        let cells = cells.map(|cell| cell.trim_end_matches(" |").to_owned());
+        Some((number.parse().ok()?, name.to_owned(), cells.collect()))
+    };
+    let rows: Vec<_> = page.lines().filter_map(row_of).collect();
+    let row = |i: usize| rows.iter().find(|(_, name, _)| name == FEATURES[i].name);
+    let (Some((_, _, cells)), Some((number, ..))) = (row(first), row(second)) else {
+        return false;
+    };
+    cells.get(number - 1).is_some_and(|cell| cell == "+")
 }
 
 /// True where a rule is the reason.
