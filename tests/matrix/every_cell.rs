@@ -1,5 +1,5 @@
 //! The matrix of `docs/matrix.md`: every cell is drawn by the device as by its CPU reference, or refused by both with the same
-//! reason, and the page says which. Of filters other than linear one by turns stands for all.
+//! reason, and the page says which. A share of them, by turns, stands for all; `make sweep` draws each.
 
 use crate::cells::{DENOISE, FEATURES, FILTERS, Feature, MODES, Matter, Seen, settings};
 use crate::page;
@@ -109,10 +109,11 @@ fn geometry(seen: Seen, volume: &Volume) -> Option<Geometry> {
     (seen == Seen::Tube).then(|| cones.into())
 }
 
-/// Of five filters other than linear one is drawn, by turns: rows have seven of all filters, so that it is another one in each
-/// mode.
+/// Of two cells of the linear filter one is drawn, and of five of other filters, by turns: rows have seven of all filters, so
+/// that they are others in each mode and row.
 fn is_left(filter: Filter, nth: usize) -> bool {
-    !sweep::is_long() && filter != Filter::Linear && !nth.is_multiple_of(5)
+    let every = if filter == Filter::Linear { 2 } else { 5 };
+    !sweep::is_long() && !nth.is_multiple_of(every)
 }
 
 /// Drawn as computed, or refused by all three in the same words.

@@ -64,8 +64,7 @@ fn every_pair_is_drawn_or_refused_for_a_reason() {
 #[test]
 #[ignore = "writes docs/pairs.md: make pairs"]
 fn write_the_page() {
-    let kept = std::fs::read_to_string(PAGE).expect("docs/pairs.md"); // TEMP
-    let found = outcomes(|a, b| page::says_drawn(&kept, a, b)); // TEMP
+    let found = outcomes(|_, _| false);
     std::fs::write(PAGE, page::page(&found)).expect("docs/pairs.md");
     check(&found);
 }
