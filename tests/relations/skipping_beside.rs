@@ -101,7 +101,7 @@ fn compare_many(
         let volume = make(&mut numbers, as_bytes);
         let cameras = cameras(&volume.grid());
         let mut renderer = Renderer::new(device_with(caps()), &volume).expect("a renderer");
-        for _ in 0..share(pictures) {
+        for _ in 0..pictures {
             let mut function = hills(&mut numbers, volume.value_range);
             let mut settings = settings(&mut numbers, &volume);
             change(&mut numbers, &mut settings, &mut function, &volume);
@@ -170,58 +170,70 @@ fn widget(numbers: &mut Numbers, [low, high]: [f64; 2]) -> Widget {
 
 #[test]
 fn functions_of_gradients_are_drawn_the_same_whatever_is_left_out() {
-    compare_many(balls, 3, 8, 0.8, |numbers, settings, function, volume| {
-        let range = volume.value_range;
-        let opacity = |(value, opacity)| OpacityPoint { value, opacity };
-        if numbers.below(2) == 0 {
-            function.opacity.clear();
-        }
-        function.gradient_transfer = Some(GradientTransfer {
-            steepest: Some(0.3 * (range[1] - range[0])),
-            share: [vec![], vec![opacity((0.0, 0.2)), opacity((1.0, 0.9))]][numbers.below(2)]
-                .clone(),
-            widgets: (0..numbers.below(3))
-                .map(|_| widget(numbers, range))
-                .collect(),
-        });
-        if numbers.below(3) == 0 {
-            settings.shading = Some(Shading::default());
-        }
-        sliced(numbers, settings);
-        if settings.technique == Technique::Raycast && numbers.below(4) == 0 {
-            (settings.mode, settings.lattice) = (Mode::Mida, Lattice::Ray);
-            settings.per_mode.unit_values = range;
-        }
-    });
+    compare_many(
+        balls,
+        3,
+        share(8),
+        0.8,
+        |numbers, settings, function, volume| {
+            let range = volume.value_range;
+            let opacity = |(value, opacity)| OpacityPoint { value, opacity };
+            if numbers.below(2) == 0 {
+                function.opacity.clear();
+            }
+            function.gradient_transfer = Some(GradientTransfer {
+                steepest: Some(0.3 * (range[1] - range[0])),
+                share: [vec![], vec![opacity((0.0, 0.2)), opacity((1.0, 0.9))]][numbers.below(2)]
+                    .clone(),
+                widgets: (0..numbers.below(3))
+                    .map(|_| widget(numbers, range))
+                    .collect(),
+            });
+            if numbers.below(3) == 0 {
+                settings.shading = Some(Shading::default());
+            }
+            sliced(numbers, settings);
+            if settings.technique == Technique::Raycast && numbers.below(4) == 0 {
+                (settings.mode, settings.lattice) = (Mode::Mida, Lattice::Ray);
+                settings.per_mode.unit_values = range;
+            }
+        },
+    );
 }
 
 /// A contour reaches as far as the gradient takes it, and no farther than the values around a sample let it be steep.
 #[test]
 fn contours_are_left_out_where_no_value_comes_near_them() {
-    compare_many(balls, 13, 8, 0.7, |numbers, settings, function, volume| {
-        let [low, high] = volume.value_range;
-        function.opacity.clear();
-        let mut contour = || Widget {
-            srgb: None,
-            opacity: 0.8,
-            shape: Shape::Contour {
-                value: low + (0.15 + 0.8 * numbers.next()) * (high - low),
-                half_width: [0.3, 1.0, 2.5][numbers.below(3)],
-            },
-            second: None,
-        };
-        function.gradient_transfer = Some(GradientTransfer {
-            steepest: Some(0.3 * (high - low)),
-            share: Vec::new(),
-            widgets: vec![contour(), contour()],
-        });
-        sliced(numbers, settings);
-    });
+    compare_many(
+        balls,
+        13,
+        share(8),
+        0.7,
+        |numbers, settings, function, volume| {
+            let [low, high] = volume.value_range;
+            function.opacity.clear();
+            let mut contour = || Widget {
+                srgb: None,
+                opacity: 0.8,
+                shape: Shape::Contour {
+                    value: low + (0.15 + 0.8 * numbers.next()) * (high - low),
+                    half_width: [0.3, 1.0, 2.5][numbers.below(3)],
+                },
+                second: None,
+            };
+            function.gradient_transfer = Some(GradientTransfer {
+                steepest: Some(0.3 * (high - low)),
+                share: Vec::new(),
+                widgets: vec![contour(), contour()],
+            });
+            sliced(numbers, settings);
+        },
+    );
 }
 
 #[test]
 fn slabs_are_the_same_whatever_rays_leave_out() {
-    compare_many(balls, 7, 14, 0.8, |_, settings, _, _| {
+    compare_many(balls, 7, share(14), 0.8, |_, settings, _, _| {
         settings.preintegrated = true;
         if settings.lattice == Lattice::Bresenham {
             settings.lattice = Lattice::Planes;

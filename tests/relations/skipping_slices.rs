@@ -1,6 +1,6 @@
 //! What slicers leave out changes no bit of a picture.
 
-use crate::shared::{device, device_with, oblique_camera, projections, share, volume_of};
+use crate::shared::{device, device_with, oblique_camera, projections, volume_of};
 use crate::skipping_shared::{Numbers, balls, cameras, hills, samples_of_same_pictures};
 use glam::{DAffine3, DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
@@ -81,7 +81,7 @@ fn compare_many(caps: impl Fn() -> Caps, seed: u64, pictures: usize, most: f64) 
         let volume = balls(&mut numbers, as_bytes);
         let cameras = all_cameras(&volume);
         let mut renderer = Renderer::new(device_with(caps()), &volume).expect("a renderer");
-        for _ in 0..share(pictures) {
+        for _ in 0..pictures {
             let function = hills(&mut numbers, volume.value_range);
             let settings = settings(&mut numbers, &volume);
             let scene = Scene {
