@@ -5,7 +5,7 @@
 #              the CPU reference; what draws once more under the least limits; each barrier of the
 #              examples taken away; many devices one after the other; other operating systems
 # make sweep   all of what `make test` tries a share of: each filter, axis and random picture of the tests that draw many, and each
-#              cut of a file; hours
+#              cut of a file
 # make fresh   README's two commands, make test and make demo in a new clone without anything built or downloaded
 # make plain   what draws once more, without validation
 # make least   the same under the least limits that Vulkan allows
@@ -126,7 +126,7 @@ fresh:
 lint:
 	$(CARGO) fmt --all --check
 	$(CARGO) clippy --locked --workspace --all-targets --features stratavox/capi -- -D warnings
-	$(CARGO) clippy --locked --lib --test host --example gpu_cost --no-default-features -- -D warnings
+	$(CARGO) clippy --locked --all-targets --no-default-features -- -D warnings
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --locked --no-deps --features capi
 
 build:
@@ -348,8 +348,7 @@ soak: driver
 soak-short:
 	@$(MAKE) --no-print-directory soak LOOPS=200
 
-# No cross compiler for C is wanted: of what is checked nothing is C. The program is checked for the first of them, the library for
-# all.
+# No cross compiler for C is wanted: of what is checked nothing is C. Telephones have the library, and no command line.
 TARGETS ?= x86_64-pc-windows-gnu aarch64-apple-darwin aarch64-linux-android
 
 portable:
@@ -357,6 +356,6 @@ portable:
 	    if ! why=$$(rustup target add $$target 2>&1); then \
 	        echo "skipped: $$target, for which rustup installs no library: $$(tail -1 <<< "$$why")"; continue; fi; \
 	    echo "portability, $$target"; \
-	    library=--no-default-features; [ "$$target" != "$(firstword $(TARGETS))" ] || library=""; \
-	    RUSTFLAGS="-D warnings" $(CARGO) check --locked --package stratavox --quiet --target $$target $$library --features capi; \
+	    case $$target in *-android) features=--no-default-features;; *) features="";; esac; \
+	    RUSTFLAGS="-D warnings" $(CARGO) check --locked --package stratavox --quiet --target $$target $$features --features capi; \
 	    done

@@ -8,7 +8,7 @@ const HEAD: &str = "# What goes with what
 
 Every technique, mode, filter and feature, and why some do not go together. Printed by `cargo run --example matrix` from
 the checks that the renderer itself makes; `tests/matrix/every_cell.rs` holds this page against them, draws every cell that is not
-refused on the device, of filters wider than linear one of five and in perspective or orthographic by turns, and compares it with the
+refused on the device, of the linear filter one of two, of others one of five, and in perspective or orthographic by turns, and compares it with the
 CPU reference.
 
 *all* is every filter, *narrow* is `nearest` and `linear`, a number is the reason for what is refused.

@@ -246,7 +246,7 @@ fn gather(
     key: &Key,
     drawn: Drawn,
 ) -> Result<Box<dyn Gather>, Error> {
-    let (.., [.., is_patched, _], _, depth_access, variant) = key;
+    let (.., [_, _, _, is_patched, _], _, depth_access, variant) = key;
     (settings.technique.desc().gather)(&GatherDesc {
         gpu,
         settings,

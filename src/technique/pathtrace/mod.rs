@@ -19,6 +19,7 @@ pub mod reference;
 mod rules;
 mod sky;
 mod surface;
+mod walk;
 
 pub(crate) use denoise::denoised;
 pub(crate) use elementary::turn_of;

@@ -1,13 +1,13 @@
 //! Path tracing on the CPU: CPU reference of `shaders/pathtrace.wgsl`.
 
 use super::SkyPicture;
-use super::elementary::{around, minus_ln, turned};
+use super::elementary::{around, turned};
 use super::lamp::{is_lamp, light_of_lamp};
-use super::levels::AmongLevels;
 use super::phase::{phase_cosine, phase_value};
 use super::random::random_numbers;
 use super::surface::{reflected, reflection, reflection_density};
-use crate::ray::{Ray, domain_interval, pixel_ray, voxel_ray};
+use super::walk::{Step, Walk};
+use crate::ray::{Ray, pixel_ray};
 use crate::real::{Real, add, dot, scale};
 use crate::shaders::Frame;
 use crate::technique::reference::{Gathered, Samples, moved};
@@ -41,63 +41,6 @@ pub(crate) fn pixel<R: Real>(of: &impl Samples<R>, pixel: [R; 2]) -> Gathered<R>
     }
     let count = R::from_f64(f64::from(frame.path_count));
     Gathered::of_blended(sum.map(|s| s / count), turns as f32)
-}
-
-/// The part of a ray that lies in the domain.
-struct Walk<R> {
-    world: Ray<R>,
-    voxel: Ray<R>,
-    t: R,
-    end: R,
-    levels: AmongLevels<R>,
-}
-
-impl<R: Real> Walk<R> {
-    /// From a place that has so many levels at or under it.
-    fn along(frame: &Frame, world: Ray<R>, rank: Option<usize>) -> Self {
-        let voxel = voxel_ray(frame, &world);
-        let [t, end] = domain_interval(frame, &world, &voxel);
-        Self {
-            world,
-            voxel,
-            t,
-            end,
-            levels: AmongLevels::from_rank(rank),
-        }
-    }
-
-    /// On to the next tentative collision, or to a surface, or to where the next cell begins or the domain ends.
-    fn step(&mut self, of: &impl Samples<R>, u: R) -> Step {
-        let frame = of.frame();
-        let one = R::from_f64(1.0);
-        let reach = match frame.level_count {
-            0 => self.end,
-            _ if self.t >= self.end => {
-                self.levels = AmongLevels::from_rank(None);
-                self.end
-            }
-            _ => self.levels.enter(of, &self.voxel, self.t).min(self.end),
-        };
-        let t = match frame.path_majorant > 0.0 {
-            true => self.t + minus_ln(one - u) / R::from_f32(frame.path_majorant),
-            false => reach,
-        };
-        self.t = self.levels.step(of, &self.voxel, [self.t, t.min(reach)]);
-        match t < reach {
-            _ if self.levels.has_crossed() => Step::Surface,
-            true => Step::Tentative,
-            false if self.t >= self.end => Step::Left,
-            false => Step::On,
-        }
-    }
-}
-
-/// What a step of a walk ends at.
-enum Step {
-    On,
-    Tentative,
-    Surface,
-    Left,
 }
 
 struct Path<R> {

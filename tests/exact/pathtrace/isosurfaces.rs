@@ -1,8 +1,8 @@
 //! Solid surfaces of values, and matter beside them.
 
 use super::{
-    around_blobs, assert_near, at, blobs, drawn, eye, layer, light, lit, matter, mean, mean_of,
-    of_codes, scene, settings,
+    around_blobs, assert_near, assert_same_paths, at, blobs, drawn, eye, layer, light, lit, matter,
+    mean, mean_of, of_codes, scene, settings,
 };
 use crate::shared::volume_of;
 use glam::{DAffine3, DQuat, DVec3, dvec3};
@@ -155,16 +155,7 @@ fn the_shader_meets_the_surfaces_of_its_reference() {
             )
         };
         let scene = scene(&volume, &function, &camera, &settings, [48, 40]);
-        let picture = drawn(&scene);
-        let reference = offscreen::reference::render::<f32>(&scene).expect("a picture");
-        let pairs = || picture.pixels.iter().zip(&reference.pixels);
-        let bound = if conformance { 1e-3 } else { 3e-3 };
-        let parted = pairs().filter(|(a, b)| (0..4).any(|c| (a[c] - b[c]).abs() > bound));
-        let share = parted.count() as f64 / picture.pixels.len() as f64;
-        println!("{name}: {share} of the pixels have a path that parts");
-        let most = if conformance { 0.008 } else { 0.016 };
-        assert!(share < most, "{name}: {share}");
-        assert!(pairs().filter(|(a, _)| a[3] > 0.0).count() > 700, "{name}");
+        assert_same_paths(name, &scene, 700);
     }
 }
 
