@@ -16,18 +16,13 @@ fn color_at(value: f32) -> vec3<f32> {
 
 // A colour as it is blended.
 fn shown(srgb: vec3<f32>) -> vec3<f32> {
-    if frame.color_space_is_display != 0u {
-        return srgb;
-    }
-    return linear_from_srgb(srgb);
+    return select(linear_from_srgb(srgb), srgb, frame.color_space_is_display != 0u);
 }
 
 // Interpolates numbers[first .. first + count] at a value: colour points (value, red, green, blue) come first, then
-// opacity points (value, opacity, 0, 0). Of none all are 0: what stands there is something else.
+// opacity points (value, opacity, 0, 0). Of none all are 0: what stands there is something else. Without branches, which a
+// driver may take long to compile in a loop (`docs/conformance.md`).
 fn between_points(value: f32, first: u32, count: u32, is_step: u32) -> vec4<f32> {
-    if count == 0u {
-        return vec4(0.0);
-    }
     // Invariant: points before `low` are at or below the value, points from `high` on are above it.
     var low = first;
     var high = first + count;
@@ -39,14 +34,11 @@ fn between_points(value: f32, first: u32, count: u32, is_step: u32) -> vec4<f32>
             high = middle;
         }
     }
-    if low == first {
-        return transfer_numbers.d[first];
-    }
-    let left = transfer_numbers.d[low - 1u];
-    if low == first + count || is_step != 0u {
-        return left;
-    }
-    let right = transfer_numbers.d[low];
+    let is_between = low != first && low != first + count && is_step == 0u;
+    let at = select(max(low, first + 1u) - 1u, 0u, count == 0u);
+    let left = transfer_numbers.d[at];
+    let right = transfer_numbers.d[select(at, low, is_between)];
     let part = (value - left.x) / (right.x - left.x);
-    return left + part * (right - left);
+    let found = select(left, left + part * (right - left), is_between);
+    return select(found, vec4(0.0), count == 0u);
 }
