@@ -17,7 +17,7 @@ use crate::picture::{ColorSpace, Layer, LayerKind, Picture};
 use crate::real::Real;
 use crate::scene::{Scene, positions_in_pixel};
 use crate::technique::{self, ClipPlane, DepthAccess, InPixel, Settings};
-use glam::{DVec3, DVec4};
+use glam::{DVec3, DVec4, Vec3};
 
 /// A depth that is as good as infinite, and that f32 can multiply.
 const NOTHING: f64 = 1e30;
@@ -163,6 +163,38 @@ pub(super) fn lines(geometry: &Geometry, scene: &Scene) -> Layer {
     Layer {
         kind: LayerKind::Line,
         values: seen.lines.iter().map(|&line| line as f32).collect(),
+    }
+}
+
+/// Where geometry is met before what is seen of the volume, depths and positions become its own: the nearer of both.
+pub(super) fn bring_nearer(geometry: &Geometry, scene: &Scene, layers: &mut [Layer]) {
+    let is_place = |layer: &Layer| matches!(layer.kind, LayerKind::Depth | LayerKind::Position);
+    if !layers.iter().any(is_place) {
+        return;
+    }
+    let seen = seen(geometry, scene, InPixel::CENTER);
+    let rays = scene.camera.rays(scene.extent_pixels);
+    let width = scene.extent_pixels[0] as usize;
+    for layer in layers.iter_mut().filter(|layer| is_place(layer)) {
+        let numbers = layer.kind.numbers();
+        let of_pixels = layer.values.chunks_exact_mut(numbers).zip(&seen.distances);
+        for (i, (own, &distance)) in of_pixels.enumerate() {
+            let [x, y] = [i % width, i / width].map(|n| n as f64 + 0.5);
+            let (origin, direction) = rays.at(x, y);
+            let of_volume = match *own {
+                [depth] => f64::from(depth),
+                _ => (Vec3::from_slice(own).as_dvec3() - origin).dot(direction),
+            };
+            // Nothing of the volume is NaN, which is not nearer; nothing of the geometry is infinite.
+            if distance.is_finite() && (of_volume.is_nan() || of_volume > distance) {
+                match own {
+                    [depth] => *depth = distance as f32,
+                    _ => (origin + distance * direction)
+                        .as_vec3()
+                        .write_to_slice(own),
+                }
+            }
+        }
     }
 }
 

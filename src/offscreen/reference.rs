@@ -69,8 +69,10 @@ pub fn render_with<R: Real>(scene: &Scene, geometry: Option<&Geometry>) -> Resul
             })?;
         }
     }
-    let lines = geometry.map(|geometry| behind::lines(geometry, scene));
-    picture.layers.extend(lines);
+    if let Some(geometry) = geometry {
+        behind::bring_nearer(geometry, scene, &mut picture.layers);
+        picture.layers.push(behind::lines(geometry, scene));
+    }
     Ok(picture)
 }
 

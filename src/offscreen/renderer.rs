@@ -258,6 +258,7 @@ impl<'v> Renderer<'v> {
             false => None,
         };
         let mut rendered = self.render_volume(scene, &of_volume)?;
+        self.bring_nearer(scene, &mut rendered.picture.layers);
         if let Some(lines) = lines {
             let kept = &mut rendered.picture.layers;
             let at = layers.iter().position(|kind| *kind == LayerKind::Line);

@@ -64,13 +64,13 @@ pub struct Layer {
 pub enum LayerKind {
     /// What the mode projects, before classification.
     Value,
-    /// World length along the ray to the first hit.
+    /// World length along the ray to the first hit, of the volume or of what is drawn beside it.
     Depth,
     /// 1 - alpha before the background.
     Transmittance,
     /// Samples taken.
     Samples,
-    /// World position of the first hit: x, y, z.
+    /// World position of that hit: x, y, z.
     Position,
     /// Unit normal at the first hit: x, y, z in the world, towards lower values; NaN without a gradient.
     Normal,

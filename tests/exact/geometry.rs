@@ -406,6 +406,80 @@ fn the_layer_of_lines_has_the_number_of_the_nearest() {
     }
 }
 
+/// In fog of an even value the volume's own hit is where half of the light is left, ln 2 / extinction behind the face.
+#[test]
+fn layers_of_places_have_the_nearer_of_volume_and_geometry() {
+    let (volume, function) = fog();
+    let settings = Settings::default();
+    let kinds = [LayerKind::Depth, LayerKind::Position];
+    let geometry = cones();
+    let mut renderer = Renderer::new(device(), &volume).expect("a renderer");
+    renderer.set_geometry(Some(Arc::clone(&geometry)));
+    let half = std::f64::consts::LN_2 / EXTINCTION;
+    for camera in cameras() {
+        let scene = scene(&volume, &function, &camera, &settings);
+        let found = renderer.render(&scene, &kinds).expect("a picture").picture;
+        let seen = geometry.seen(&camera, EXTENT, [0.0; 2]);
+        let on_cpu = reference::render_with::<f64>(&scene, Some(&geometry)).expect("a picture");
+        let rays = camera.rays(EXTENT);
+        // Of geometry, of fog before geometry, of fog alone, of nothing.
+        let mut told = [0_u32; 4];
+        for (i, &distance) in seen.distances.iter().enumerate() {
+            let [x, y] = [i % EXTENT[0] as usize, i / EXTENT[0] as usize].map(|n| n as f64 + 0.5);
+            let (origin, direction) = rays.at(x, y);
+            let hit = interval(origin, direction, &[])
+                .filter(|[from, to]| to - from > half)
+                .map(|[from, _]| from + half);
+            let depth = f64::from(found.layers[0].values[i]);
+            let step = 1.0;
+            let is_near = |wanted: f64| (depth - wanted).abs() <= step;
+            let is_close = |wanted: f64| (depth - wanted).abs() <= 1e-6 * wanted.max(1.0);
+            // Where the fog's hit falls within a step of something else either may be told.
+            let is_open = hit.is_some_and(|hit| (hit - distance).abs() <= step)
+                || interval(origin, direction, &[])
+                    .is_some_and(|[from, to]| (to - from - half).abs() <= step);
+            if !is_open {
+                let case = match hit {
+                    Some(hit) if hit < distance => {
+                        assert!(is_near(hit), "pixel {i}: {depth} for the fog's {hit}");
+                        1 + usize::from(distance.is_infinite())
+                    }
+                    _ if distance.is_finite() => {
+                        assert!(is_close(distance), "pixel {i}: {depth} for {distance}");
+                        0
+                    }
+                    _ => {
+                        assert!(depth.is_nan(), "pixel {i}: {depth} for nothing");
+                        3
+                    }
+                };
+                told[case] += 1;
+            }
+            let place = DVec3::from_slice(
+                &found.layers[1].values[3 * i..3 * i + 3]
+                    .iter()
+                    .map(|&n| f64::from(n))
+                    .collect::<Vec<_>>(),
+            );
+            let wanted = origin + depth * direction;
+            assert!(
+                depth.is_nan() && place.is_nan() || (place - wanted).length() <= 1e-5,
+                "pixel {i}: {place} for {wanted}"
+            );
+            let of_cpu = on_cpu
+                .layers
+                .iter()
+                .find(|layer| layer.kind == LayerKind::Depth);
+            let of_cpu = f64::from(of_cpu.expect("depths").values[i]);
+            assert!(
+                is_open || is_near(of_cpu) || depth.is_nan() && of_cpu.is_nan(),
+                "pixel {i}: {depth}, and {of_cpu} on the CPU"
+            );
+        }
+        assert!(told.iter().all(|&of| of > 10), "{told:?}");
+    }
+}
+
 #[test]
 fn what_cannot_show_geometry_says_so() {
     let of = |technique| Settings {

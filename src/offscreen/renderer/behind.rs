@@ -86,6 +86,13 @@ impl Renderer<'_> {
         Ok(behind::lines(&behind.geometry, scene))
     }
 
+    /// Depths and positions of what is nearer, volume or geometry.
+    pub(super) fn bring_nearer(&self, scene: &Scene, layers: &mut [Layer]) {
+        if let Some(behind) = &self.behind {
+            behind::bring_nearer(&behind.geometry, scene, layers);
+        }
+    }
+
     /// What hides samples of slices in such pictures.
     pub(super) fn depth_access(&self, settings: &Settings) -> DepthAccess {
         match self.behind.is_none() || settings.mode.is_projection() {
