@@ -118,6 +118,47 @@ fn geometries_of_geojson_are_read_wherever_they_stand() {
     }
 }
 
+fn topology(transform: &str, arcs: &str, used: &str) -> String {
+    format!(
+        r#"{{"type":"Topology","transform":{transform},"arcs":{arcs},"objects":{{"all":{{"type":"LineString","arcs":{used}}}}}}}"#
+    )
+}
+
+#[test]
+fn arcs_of_topojson_are_lines_once() {
+    let folder = Folder::new();
+    // The quarter of a degree, from 180 west and 90 south: the first arc is the river from its end.
+    let arcs =
+        "[[[1440,720],[-1438,-718]],[[726,560],[4,1],[-2,3.5],[-2,-4.5]],[[0,0],[1,1]],[[5,5]]]";
+    let transform = r#"{"scale":[0.25,0.25],"translate":[-180,-90]}"#;
+    let objects = r#"{"land":{"type":"GeometryCollection","geometries":[
+        {"type":"MultiPolygon","arcs":[[[1]],[[-2,3]]]},{"type":null},{"type":"Point","coordinates":[7,7]}]},
+        "rivers":{"type":"MultiLineString","id":4,"properties":{"arcs":[2]},"arcs":[[-1],[0]]}}"#;
+    let text = format!(
+        r#"{{"objects":{objects},"arcs":{arcs},"transform":{transform},"bbox":[0,0,1,1],"type":"Topology"}}"#
+    );
+    let river = vec![[180.0, 90.0], [-179.5, -89.5]];
+    for text in [text.clone(), format!("\u{feff}\n {text}")] {
+        let found = read(&folder, "a.json", text.as_bytes());
+        assert_eq!(found, Ok(vec![river.clone(), island()]));
+    }
+    // Numbers that are degrees already, and heights.
+    let found = read(
+        &folder,
+        "a.json",
+        topology("null", "[[[-179.5,-89.5,3],[180,90,4]]]", "[0]").as_bytes(),
+    );
+    assert_eq!(found, Ok(vec![self::river()]));
+    // What a sum of steps is off the edge of the map is taken away.
+    let steps = topology(
+        r#"{"scale":[0.0036000360003600037,0.001],"translate":[-180,-90]}"#,
+        "[[[99999,0],[0,1000]]]",
+        "[0]",
+    );
+    let found = read(&folder, "a.json", steps.as_bytes());
+    assert_eq!(found, Ok(vec![vec![[180.0, -90.0], [180.0, -89.0]]]));
+}
+
 #[test]
 fn what_is_wrong_in_a_file_is_said() {
     let folder = Folder::new();
@@ -128,7 +169,7 @@ fn what_is_wrong_in_a_file_is_said() {
         )
     };
     let mut cases: Vec<(Vec<u8>, &[&str])> = Vec::new();
-    let texts: [(String, &[&str]); 14] = [
+    let texts: [(String, &[&str]); 20] = [
         (
             line("[[500000,0],[0,0]]"),
             &["line 2", "a longitude from -360 to 360 degrees", "500000"],
@@ -151,8 +192,36 @@ fn what_is_wrong_in_a_file_is_said() {
         (line("null"), &["`coordinates`", "null"]),
         (line("[[1e999,0],[0,0]]"), &["number out of range"]),
         (
+            r#"{"type":"Atlas","arcs":[]}"#.to_owned(),
+            &["FeatureCollection", "Atlas"],
+        ),
+        (
             r#"{"type":"Topology","arcs":[]}"#.to_owned(),
-            &["FeatureCollection", "Topology"],
+            &["a topology", "objects"],
+        ),
+        (
+            topology("null", "[[[0,0],[1,1]]]", "[-2]"),
+            &["objects", "of which there are 1", "`-2`"],
+        ),
+        (
+            topology("null", "[[[0,0],[1]]]", "[0]"),
+            &["line 1", "two numbers"],
+        ),
+        (
+            topology("null", "[[[0,0],[0,91]]]", "[0]"),
+            &["arcs: 0", "a latitude from -90 to 90 degrees", "91"],
+        ),
+        (
+            topology(
+                r#"{"scale":[1e300,1],"translate":[0,0]}"#,
+                "[[[1e300,0],[0,0]]]",
+                "[0]",
+            ),
+            &["arcs: 0", "a longitude from -360 to 360 degrees"],
+        ),
+        (
+            topology("null", "[[[0,0],[1,1]]]", "[[]]"),
+            &["objects", "a line", "none"],
         ),
         (r#"{"coordinates":[]}"#.to_owned(), &["`type`", "none"]),
         (
@@ -173,7 +242,7 @@ fn what_is_wrong_in_a_file_is_said() {
     }
     cases.push((
         b"\x89PNG".to_vec(),
-        &["wanted a shapefile (.shp) or GeoJSON"],
+        &["wanted a shapefile (.shp), GeoJSON or TopoJSON"],
     ));
     cases.push((shapefile(1, &[]), &["type 1", "not supported"]));
     cases.push((
@@ -257,7 +326,7 @@ fn what_is_wrong_in_a_file_is_said() {
     assert!(refused.contains("the limit is 100"), "{refused}");
 }
 
-fn bases() -> [Vec<u8>; 4] {
+fn bases() -> [Vec<u8>; 5] {
     let shapes = [vec![island(), river()], vec![], vec![river()]];
     let text = r#"{"type":"FeatureCollection","features":[
 {"type":"Feature","properties":{"name":"a"},"geometry":{"type":"LineString","coordinates":[[1,2],[3,4.5]]}},
@@ -268,6 +337,12 @@ fn bases() -> [Vec<u8>; 4] {
         shapefile(15, &shapes),
         shapefile(23, &shapes),
         text.as_bytes().to_vec(),
+        topology(
+            r#"{"scale":[0.25,0.25],"translate":[-180,-90]}"#,
+            "[[[1440,720],[-1438,-718]],[[726,560],[4,1],[-2,3]]]",
+            "[-1,1]",
+        )
+        .into_bytes(),
     ]
 }
 

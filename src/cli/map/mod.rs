@@ -40,8 +40,8 @@ pub struct MapFlags {
     #[arg(long, value_name = "LIST", num_args = 0..=1, default_missing_value = MapWords::ALL, help_heading = "Lines")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub map: Option<MapWords>,
-    /// The coast of --map by the lines and polygons of a file, in degrees: a shapefile or GeoJSON
-    #[arg(long, value_name = "FILE.shp|.geojson", help_heading = "Lines")]
+    /// The coast of --map by the lines and polygons of a file, in degrees: a shapefile, GeoJSON or TopoJSON
+    #[arg(long, value_name = "FILE.shp|.geojson|.json", help_heading = "Lines")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub coast: Option<CoastFile>,
 }

@@ -1,4 +1,4 @@
-//! Lines on the Earth from files: shapefiles and GeoJSON, told apart by content.
+//! Lines on the Earth from files: shapefiles, GeoJSON and TopoJSON, told apart by content.
 //!
 //! ```text
 //! file -> lines of [longitude, latitude], degrees
@@ -10,6 +10,7 @@
 
 mod geojson;
 mod shapefile;
+mod topojson;
 
 use super::convert::to_u64;
 use super::place::open_regular;
@@ -23,6 +24,7 @@ pub type GeographicLine = Vec<[f64; 2]>;
 
 /// Coasts of the whole Earth at 1 : 10 million have a tenth of this, text or not.
 const MOST_BYTES: u64 = 256 << 20;
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 /// Degrees that the last digits of a latitude may be off.
 const ROUNDING: f64 = 1e-6;
 
@@ -35,12 +37,21 @@ pub fn read_lines(path: &Path, limits: &Limits) -> Result<Vec<GeographicLine>, R
     let bytes = bytes_of(path, limits).map_err(at(path))?;
     let lines = match &bytes {
         bytes if shapefile::recognizes(bytes) => shapefile::lines(bytes),
-        bytes if geojson::recognizes(bytes) => geojson::lines(bytes),
-        _ => Err(Problem::UnknownFormat(
-            ": wanted a shapefile (.shp) or GeoJSON".to_owned(),
-        )),
+        bytes => match text_of(bytes) {
+            Some(text) if topojson::recognizes(text) => topojson::lines(text),
+            Some(text) => geojson::lines(text),
+            None => Err(Problem::UnknownFormat(
+                ": wanted a shapefile (.shp), GeoJSON or TopoJSON".to_owned(),
+            )),
+        },
     };
     lines.map_err(at(path))
+}
+
+/// An object of JSON without a mark of the order of bytes; `None` where a file begins otherwise.
+fn text_of(bytes: &[u8]) -> Option<&[u8]> {
+    let text = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
+    text.trim_ascii_start().starts_with(b"{").then_some(text)
 }
 
 fn bytes_of(path: &Path, limits: &Limits) -> Result<Vec<u8>, Problem> {

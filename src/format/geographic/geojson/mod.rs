@@ -24,17 +24,9 @@ use std::fmt;
 
 /// The word of errors.
 const GEOJSON: &str = "geojson";
-const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
-
-/// True where a file begins as an object of JSON does.
-pub(super) fn recognizes(first: &[u8]) -> bool {
-    let text = first.strip_prefix(BYTE_ORDER_MARK).unwrap_or(first);
-    text.trim_ascii_start().starts_with(b"{")
-}
 
 /// All lines of the text.
-pub(super) fn lines(bytes: &[u8]) -> Result<Vec<GeographicLine>, Problem> {
-    let text = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
+pub(super) fn lines(text: &[u8]) -> Result<Vec<GeographicLine>, Problem> {
     let mut reader = serde_json::Deserializer::from_slice(text);
     let read = Object(Role::Any).deserialize(&mut reader);
     let read = read.and_then(|lines| reader.end().map(|()| lines));
