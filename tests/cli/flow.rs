@@ -253,3 +253,19 @@ fn lines_of_a_forecast_end_where_its_own_columns_say() {
     // W is brought from its own even heights to those of U.
     assert!(up[last] < 25.0 && up[middle] < 2.0);
 }
+
+#[test]
+fn beside_a_volume_that_is_drawn_from_its_file_is_what_is_beside_one_in_memory() {
+    let folder = Folder::new();
+    for words in ["--flow stream", "--barbs=2 --hide-volume"] {
+        let draw = |more: &str, name: &str| {
+            let ran = folder.run(&format!(
+                "render {STORM} --variable vapor {words} {more} --size 80x60 --force -o {name}"
+            ));
+            ran.assert_done();
+            fs::read(folder.path(name)).expect("a picture")
+        };
+        let wanted = draw("", "a.png");
+        assert!(draw("--stream", "b.png") == wanted, "{words}");
+    }
+}

@@ -178,10 +178,10 @@ impl SceneInputs {
     ) -> Result<Self, Error> {
         let with_level = with_level(scene, settings.mode, source.as_ref(), progress)?;
         let scene = with_level.as_ref().unwrap_or(scene);
-        if streamed::is_wanted(source.as_ref(), scene, settings, device)? {
-            return Self::streamed(source, scene, settings, device, progress);
-        }
-        let shown = Self::of(source, scene, settings, device, progress)?;
+        let shown = match streamed::is_wanted(source.as_ref(), scene, settings, device)? {
+            true => Self::streamed(source, scene, settings, device, progress),
+            false => Self::of(source, scene, settings, device, progress),
+        }?;
         shown.with_lines(scene, None, progress)
     }
 
