@@ -167,7 +167,7 @@ fn a_coast_is_refused_in_words() {
         (
             format!("{file} --map coast --coast {wrf}"),
             3,
-            "wanted a shapefile (.shp) or GeoJSON",
+            "wanted a shapefile (.shp), GeoJSON or TopoJSON",
         ),
         (
             format!("{file} --map coast --coast around.geojson"),
