@@ -41,8 +41,7 @@ impl Input {
             (Self::Head, true) => "head.svb",
             (Self::Cells, false) => "phantom:cells,n=12",
             (Self::Cells, true) => "cells.svb",
-            (Self::Storm, false) => "phantom:storm,n=12,times=2 --variable vapor",
-            (Self::Storm, true) => "storm.svb",
+            (Self::Storm, _) => "phantom:storm,n=12,times=2 --variable vapor",
             (Self::Earth, _) => "earth.nc --variable pot",
             (Self::Colors, _) => "colors.nrrd",
             (Self::Points, _) => "points.csv",
@@ -85,7 +84,6 @@ pub fn write(folder: &Folder) {
     for words in [
         "phantom:head,n=20 -o head.svb",
         "phantom:cells,n=12 -o cells.svb",
-        "phantom:storm,n=12,times=2 --variable vapor -o storm.svb",
     ] {
         folder.run(&format!("convert {words}")).assert_done();
     }
