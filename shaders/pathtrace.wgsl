@@ -32,6 +32,7 @@
 #import sky
 #import lamp
 #import crossing_{levels}
+#import leave_{layers}
 
 // Mean radiance of paths, and which part of them has met matter: of n paths behind b others
 //
@@ -110,6 +111,7 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
     var path: Path;
     var walk: Walk;
     var at: Collision;
+    var layers: PathLayers;
     loop {
         if state == NEXT {
             if sample == end {
@@ -134,6 +136,9 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
         var chances = vec3(0.0);
         var color = vec3(0.0);
         let place = walk.voxel.origin + walk.t * walk.voxel.direction;
+        if is_tentative {
+            layers = with_sample(layers);
+        }
         if is_tentative && volume_is_valid(footprint_of(place)) {
             let value = volume_value(place);
             let matter = classify(value);
@@ -144,7 +149,9 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
             chances = min(extinctions * frame.path_density / walk.majorant, vec3(1.0));
             color = matter.color;
             if frame.emission_point_count != 0u && state == PATH {
-                path.radiance += path.weight * emission_at(value) / walk.majorant;
+                let light = path.weight * emission_at(value) / walk.majorant;
+                path.radiance += light;
+                layers = with_light(layers, light, path.bounces);
             }
         }
         let is_crossed = has_crossed(walk.levels);
@@ -162,25 +169,31 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
                 at.through *= select(0.0, LEAST / most, u.y * LEAST < most);
             }
             if has_left || all(at.through == vec3(0.0)) {
-                path.radiance += path.weight * at.light * at.through;
+                let light = path.weight * at.light * at.through;
+                path.radiance += light;
+                layers = with_light(layers, light, path.bounces + 1u);
                 state = SCATTER;
             }
         } else if has_left {
-            path.radiance += path.weight * sky_of(path, walk.world.direction);
+            let light = path.weight * sky_of(path, walk.world.direction);
+            path.radiance += light;
+            if path.has_met {
+                layers = with_light(layers, light, path.bounces);
+            }
             path.has_met = path.has_met || frame.path_sky_shown != 0u;
             state = NEXT;
         } else if u.y < chance {
-            path.has_met = true;
             path.weight *= of_colors(chances, chance);
             // Without bounces matter shines: by itself, or in its colours.
             if frame.path_bounces == 0u && frame.emission_point_count == 0u {
                 path.radiance = path.weight * color;
+                layers = with_light(layers, path.radiance, 0u);
             }
-            if path.bounces == frame.path_bounces {
-                state = NEXT;
-            } else {
+            let is_last = path.bounces == frame.path_bounces;
+            var numbers: vec4<f32>;
+            if !is_last || (leaves_layers() && !path.has_met) {
                 key.z += OF_COLLISION;
-                let numbers = random_numbers(key);
+                numbers = random_numbers(key);
                 at.place = walk.world.origin + walk.t * walk.world.direction;
                 at.direction = walk.world.direction;
                 at.rank = walk.levels.rank;
@@ -192,6 +205,14 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
                     at.normal = normal_at(place, at.direction, numbers.x);
                 }
                 at.albedo = color * frame.path_albedo;
+            }
+            if !path.has_met {
+                layers = with_first(layers, at.albedo, at.normal, walk.t);
+            }
+            path.has_met = true;
+            if is_last {
+                state = NEXT;
+            } else {
                 at.through = vec3(1.0);
                 if !is_coated(at) {
                     path.weight *= at.albedo;
@@ -212,6 +233,7 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
             key.z = NUMBERS_OF_DRAW * path.draw + OF_DIRECTION;
             let numbers = random_numbers(key);
             path.bounces++;
+            layers = with_bounce(layers);
             let next = scattered(at, numbers);
             path.weight *= next.weight;
             path.density = next.density;
@@ -229,6 +251,7 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
     }
     let count = f32(frame.path_count);
     textureStore(picture, pixel, mean + (sum - count * mean) / (f32(frame.path_before) + count));
+    leave_layers(pixel, layers, count);
 }
 
 // Rays through a thin lens meet where they meet the plane of focus.

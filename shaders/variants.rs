@@ -127,8 +127,8 @@ const PARAMETERS: Slot = slot("parameters", &["uniform", "planes", "stack"]);
 /// Whether clip planes cut the domain, cut faces are seen, rays have places of their own in their pixels or begin by a part
 /// of a step earlier: or nothing of it.
 const CUTS: Slot = constant("cuts", &["cut", "whole"]);
-/// Whether rays leave depth, value and number of samples beside the picture, and what bricks behind go on with: or the
-/// picture alone.
+/// Whether rays leave depth, value and number of samples beside the picture, and what bricks behind go on with, or paths their
+/// layers: or the picture alone.
 const LAYERS: Slot = constant("layers", &["layers", "picture"]);
 /// What says where nothing is seen. The word `cells` is left out of names.
 const SPACE: Slot = constant("space", &["cells", "octree", "runs"]);
@@ -575,8 +575,14 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         &[SHEETS, constant("mode", &["mip", "minip", "sum"]), HOLES],
     ),
     ("splat_points", &[TRANSFER]),
-    ("pathtrace", &[NARROW, HOLES, TRANSFER, TAPS, LEVELS]),
-    ("pathtrace", &[CORNERS, HOLES, STORED, SHARED, LEVELS]),
+    (
+        "pathtrace",
+        &[NARROW, HOLES, TRANSFER, TAPS, LEVELS, LAYERS],
+    ),
+    (
+        "pathtrace",
+        &[CORNERS, HOLES, STORED, SHARED, LEVELS, LAYERS],
+    ),
     (
         "splat_points_projection",
         &[constant("mode", &["mip", "minip", "sum"])],

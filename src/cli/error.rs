@@ -172,6 +172,9 @@ impl From<offscreen::Error> for Error {
             offscreen::Error::NoLabels => {
                 Self::usage(error.to_string(), "--labels FILE lays a map over INPUT")
             }
+            offscreen::Error::NoLayersOfBegun => {
+                Self::usage(error.to_string(), "leave out --aov or --resume")
+            }
             offscreen::Error::NoLines => Self::usage(
                 error.to_string(),
                 "--flow stream draws lines along the wind",

@@ -7,6 +7,7 @@ use crate::picture::{Layer, LayerKind};
 use crate::real::Real;
 use crate::resolve::reference::projected_value;
 use crate::scene::Scene;
+use crate::technique::pathtrace::{images_of, numbers_of};
 use crate::technique::reference::Gathered;
 use crate::technique::{Error, Mode};
 use crate::transfer::{Classified, TransferFunction, Window};
@@ -27,6 +28,9 @@ pub(super) fn layers<R: Real>(
     scene: &Scene,
     gathered: &[Gathered<R>],
 ) -> Result<Vec<Layer>, Error> {
+    if scene.settings.technique.traces_paths() {
+        return Ok(layers_of_paths(gathered));
+    }
     let mode = scene.settings.mode;
     let layer = |kind, number: &dyn Fn(&Gathered<R>) -> f32| Layer {
         kind,
@@ -69,4 +73,30 @@ pub(super) fn layers<R: Real>(
         layers.push(depth);
     }
     Ok(layers)
+}
+
+/// What paths met nothing by, and what they leave beside their picture.
+fn layers_of_paths<R: Real>(gathered: &[Gathered<R>]) -> Vec<Layer> {
+    let of_paths = |kind: LayerKind| {
+        let pixels = gathered.iter().filter_map(|g| g.paths.as_ref());
+        let numbers = pixels.flat_map(|means| {
+            let numbers = numbers_of(kind, means).into_iter();
+            numbers.take(kind.numbers())
+        });
+        Layer {
+            kind,
+            values: numbers.collect(),
+        }
+    };
+    let through = |g: &Gathered<R>| 1.0 - g.accumulation[3].to_f32();
+    let transmittance = Layer {
+        kind: LayerKind::Transmittance,
+        values: gathered.iter().map(through).collect(),
+    };
+    let kinds = LayerKind::ALL.into_iter();
+    let kinds = kinds.filter(|&kind| !images_of(kind).is_empty());
+    [transmittance]
+        .into_iter()
+        .chain(kinds.map(of_paths))
+        .collect()
 }

@@ -4,6 +4,7 @@ use super::Error;
 use super::position::label_map;
 use crate::picture::LayerKind;
 use crate::scene::Scene;
+use crate::technique::pathtrace::images_of;
 use crate::technique::{Filter, Mode, SampleInputs, Settings};
 
 /// Refuses layers that the picture of a scene does not have.
@@ -28,6 +29,11 @@ pub fn check_layers(scene: &Scene, wanted: &[LayerKind]) -> Result<(), Error> {
         }
     }
     Ok(())
+}
+
+/// True where some of the layers are left by paths beside their picture, and do not follow from its sums.
+pub fn has_path_layers(wanted: &[LayerKind]) -> bool {
+    wanted.iter().any(|&kind| !images_of(kind).is_empty())
 }
 
 /// True where a label can be told at the first hit: in a map over the volume, or in a volume of numbers that nothing

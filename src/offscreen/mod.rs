@@ -24,6 +24,8 @@ mod upload;
 
 pub use behind::check_geometry;
 pub use denoise::denoised;
+#[cfg(feature = "cli")]
+pub(crate) use layer_rules::has_path_layers;
 pub use probe::{Ceilings, ceilings};
 pub use renderer::{Filtered, Kept, PathSums, Rendered, Renderer, Traced};
 pub use stream::{Stream, StreamOptions};
@@ -55,6 +57,11 @@ pub enum Error {
     /// The layer of normals, of what is no single volume in memory.
     #[error("the layer `normal` is for one volume of numbers in memory")]
     NoNormals,
+    /// Layers of paths, of a picture that goes on from the sums of others.
+    #[error(
+        "layers of paths are of all its paths, and this picture goes on from sums of its colours alone"
+    )]
+    NoLayersOfBegun,
     /// The layer of lines, in a picture without geometry.
     #[error("the layer `line` is for pictures with geometry")]
     NoLines,

@@ -77,6 +77,12 @@ pub struct Passes {
 }
 
 impl Passes {
+    /// Whether rays leave what lies beside the picture.
+    pub fn writes_layers(&self) -> bool {
+        let (.., variant) = &self.key;
+        variant.writes_layers
+    }
+
     /// Compiles for such pictures.
     pub fn new(gpu: &Arc<Gpu>, settings: &Settings, key: Key) -> Result<Self, Error> {
         let mode = settings.mode;

@@ -114,13 +114,34 @@ fn render_denoised<R: Real>(scene: &Scene) -> Result<Picture, Error> {
             },
             ..scene.settings.clone()
         };
-        render_one::<R>(&Scene { settings, ..*scene }, None)
+        render_gathered::<R>(&Scene { settings, ..*scene }, None)
     };
     let half = path.samples.div_ceil(2);
-    let first = of_half(path.first_sample, half)?;
-    let second = of_half(path.first_sample + half, path.samples - half)?;
+    let counts = [half, path.samples - half];
+    let (first, of_first) = of_half(path.first_sample, counts[0])?;
+    let (second, of_second) = of_half(path.first_sample + half, counts[1])?;
     let pixels = denoised([&first.pixels, &second.pixels], first.width as usize);
-    Ok(Picture { pixels, ..first })
+    let pairs = of_first.into_iter().zip(of_second);
+    let all: Vec<_> = pairs.map(|both| mean_of_paths(both, counts)).collect();
+    let layers = layers(scene, &all)?;
+    Ok(Picture {
+        pixels,
+        layers,
+        ..first
+    })
+}
+
+/// Of so many paths and so many others.
+fn mean_of_paths<R: Real>((a, b): (Gathered<R>, Gathered<R>), counts: [u32; 2]) -> Gathered<R> {
+    let all = f64::from(counts[0]) + f64::from(counts[1]);
+    let [u, v] = counts.map(|count| f64::from(count) / all);
+    let colors = std::array::from_fn(|c| {
+        R::from_f64(u) * a.accumulation[c] + R::from_f64(v) * b.accumulation[c]
+    });
+    let mean = |a: f32, b: f32| (u * f64::from(a) + v * f64::from(b)) as f32;
+    let [a, b] = [a, b].map(|g| g.paths.unwrap_or_default());
+    let images = std::array::from_fn(|i| std::array::from_fn(|c| mean(a[i][c], b[i][c])));
+    Gathered::of_paths(colors, images)
 }
 
 fn render_one<R: Real>(scene: &Scene, geometry: Option<&Geometry>) -> Result<Picture, Error> {
@@ -128,6 +149,15 @@ fn render_one<R: Real>(scene: &Scene, geometry: Option<&Geometry>) -> Result<Pic
     if settings.technique.traces_paths() && settings.path.denoise {
         return render_denoised::<R>(scene);
     }
+    let (picture, _) = render_gathered::<R>(scene, geometry)?;
+    Ok(picture)
+}
+
+/// The picture, and what the rays through the middles of pixels have left for it.
+fn render_gathered<R: Real>(
+    scene: &Scene,
+    geometry: Option<&Geometry>,
+) -> Result<(Picture, Vec<Gathered<R>>), Error> {
     R::begin();
     let grid = scene.volume.grid();
     let mode = scene.settings.mode;
@@ -211,7 +241,7 @@ fn render_one<R: Real>(scene: &Scene, geometry: Option<&Geometry>) -> Result<Pic
         layers: layers(scene, &centers)?,
     };
     put_over(scene, geometry, &mut picture);
-    Ok(picture)
+    Ok((picture, centers))
 }
 
 /// The rays of all pixels of a picture.

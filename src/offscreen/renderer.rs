@@ -16,6 +16,7 @@ mod gather;
 mod kept;
 mod labelled;
 mod pacing;
+mod path_layers;
 mod path_sky;
 mod path_sums;
 mod paths;
@@ -27,7 +28,7 @@ use super::Error;
 use super::fade::{render_faded, stacks_of};
 use super::gradients::decided;
 use super::keyed::Keyed;
-use super::layer_rules::{Clock, Mean, check_layers};
+use super::layer_rules::{Clock, Mean, check_layers, has_path_layers};
 use super::light::Matter;
 use super::passes::{Passes, key_of};
 use super::stream::{Cache, Stream};
@@ -310,8 +311,10 @@ impl<'v> Renderer<'v> {
         clock: &mut Clock,
     ) -> Result<Picture, Error> {
         let most_turns = self.device.gpu().limits().max_loop_turns;
-        // Those of paths are made of their sums.
-        let has_layers = !layers.is_empty() && !scene.settings.technique.traces_paths();
+        let has_layers = match scene.settings.technique.traces_paths() {
+            true => has_path_layers(layers),
+            false => !layers.is_empty(),
+        };
         self.passes_done = [0, passes_of(scene, has_layers, most_turns)];
         self.prepare(scene, has_layers)?;
         self.prepare_skip(scene)?;
@@ -336,13 +339,13 @@ impl<'v> Renderer<'v> {
         let [width, height] = scene.extent_pixels;
         let color_space = scene.settings.color_space;
         if scene.settings.technique.traces_paths() {
-            let (pixels, sums) = self.picture_of_paths(scene, clock)?;
+            let (pixels, layers) = self.picture_of_paths(scene, layers, clock)?;
             return Ok(Picture {
                 width,
                 height,
                 pixels,
                 color_space,
-                layers: layers.iter().map(|&kind| sums.layer(kind)).collect(),
+                layers,
             });
         }
         let pixels = self.mean_of_rays(scene, clock)?;

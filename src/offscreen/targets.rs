@@ -96,12 +96,23 @@ impl Targets {
         image: &Image,
         used: Use,
     ) -> Result<Vec<[f32; 4]>, Error> {
+        self.read_layer(device, image, 0, used)
+    }
+
+    /// The same of one image of an array.
+    pub fn read_layer(
+        &self,
+        device: &mut Headless,
+        image: &Image,
+        number: u32,
+        used: Use,
+    ) -> Result<Vec<[f32; 4]>, Error> {
         let gpu = Arc::clone(device.gpu());
         let [width, height] = self.extent();
         let rows = (COPIED_BYTES / (16 * u64::from(width))).clamp(1, height.into()) as u32;
         for first in (0..height).step_by(rows as usize) {
             let region = Region {
-                origin: [0, first, 0],
+                origin: [0, first, number],
                 extent: [width, rows.min(height - first), 1],
             };
             let offset = 16 * u64::from(width) * u64::from(first);

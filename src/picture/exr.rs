@@ -31,6 +31,7 @@ pub(super) fn encode(picture: &Picture) -> std::result::Result<Vec<u8>, OutputPr
         }
         let parts = match layer.kind {
             LayerKind::Annotation => ["R", "G", "B", "A"],
+            kind if kind.is_color() => ["R", "G", "B", "A"],
             _ => ["X", "Y", "Z", "W"],
         };
         for (k, axis) in parts.into_iter().enumerate().take(numbers) {

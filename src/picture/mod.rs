@@ -64,15 +64,17 @@ pub struct Layer {
 pub enum LayerKind {
     /// What the mode projects, before classification.
     Value,
-    /// World length along the ray to the first hit, of the volume or of what is drawn beside it.
+    /// World length along the ray to the first hit, of the volume or of what is drawn beside it; of paths the mean over those
+    /// that meet something.
     Depth,
     /// 1 - alpha before the background.
     Transmittance,
-    /// Samples taken.
+    /// Samples taken; of paths the mean number of tentative collisions.
     Samples,
     /// World position of that hit: x, y, z.
     Position,
-    /// Unit normal at the first hit: x, y, z in the world, towards lower values; NaN without a gradient.
+    /// Unit normal at the first hit: x, y, z in the world, towards lower values; NaN without a gradient. Of paths the mean of the
+    /// normals of the surfaces that they meet first, towards the eye, 0 for those that meet none.
     Normal,
     /// The label at the first hit.
     Label,
@@ -80,13 +82,23 @@ pub enum LayerKind {
     Line,
     /// Path tracing: the standard error of luminance, linear; NaN where too few paths tell.
     Noise,
+    /// Path tracing: the mean albedo of the first collision, linear; 0 for paths that meet nothing.
+    Albedo,
+    /// Path tracing: light that was scattered once, linear.
+    Direct,
+    /// Path tracing: light that was scattered more often, linear.
+    Indirect,
+    /// Path tracing: light that matter sends out and nothing scatters, linear.
+    Emission,
+    /// Path tracing: how often paths are scattered, the mean.
+    Bounces,
     /// Marks that lie over the picture: linear light times opacity, and opacity. No renderer makes it.
     Annotation,
 }
 
 impl LayerKind {
     /// All that renderers make, in the order of `--aov`'s help.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 14] = [
         Self::Value,
         Self::Depth,
         Self::Transmittance,
@@ -96,6 +108,11 @@ impl LayerKind {
         Self::Label,
         Self::Line,
         Self::Noise,
+        Self::Albedo,
+        Self::Direct,
+        Self::Indirect,
+        Self::Emission,
+        Self::Bounces,
     ];
 
     /// The word of `--aov`, the name of the EXR channel, and the `NAME` of `OUT.NAME.npy`.
@@ -110,14 +127,28 @@ impl LayerKind {
             Self::Label => "label",
             Self::Line => "line",
             Self::Noise => "noise",
+            Self::Albedo => "albedo",
+            Self::Direct => "direct",
+            Self::Indirect => "indirect",
+            Self::Emission => "emission",
+            Self::Bounces => "bounces",
             Self::Annotation => "annotation",
         }
+    }
+
+    /// Whether its numbers are linear red, green and blue.
+    pub fn is_color(self) -> bool {
+        matches!(
+            self,
+            Self::Albedo | Self::Direct | Self::Indirect | Self::Emission
+        )
     }
 
     /// How many numbers a pixel has.
     pub fn numbers(self) -> usize {
         match self {
             Self::Position | Self::Normal => 3,
+            _ if self.is_color() => 3,
             Self::Annotation => 4,
             _ => 1,
         }

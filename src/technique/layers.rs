@@ -34,14 +34,18 @@ impl Settings {
     /// What pictures of these settings lack for a layer, one volume's or, with `are_several`, that of several.
     pub(crate) fn lack(&self, layer: LayerKind, are_several: bool) -> Option<Lack> {
         use LayerKind::{
-            Annotation, Depth, Label, Line, Noise, Normal, Position, Samples, Transmittance, Value,
+            Albedo, Annotation, Bounces, Depth, Direct, Emission, Indirect, Label, Line, Noise,
+            Normal, Position, Samples, Transmittance, Value,
         };
         let (technique, mode) = (self.technique, self.mode);
         let is_sum = are_several && mode.is_projection();
         match layer {
-            Noise => (!technique.traces_paths()).then_some(Lack::Paths),
+            Noise | Albedo | Direct | Indirect | Emission | Bounces => {
+                (!technique.traces_paths()).then_some(Lack::Paths)
+            }
             // Paths that meet the sky meet something.
             Transmittance if technique.traces_paths() => self.path.shows_sky.then_some(Lack::Unlit),
+            Depth | Normal | Samples if technique.traces_paths() => None,
             // Of many paths in a pixel none is the one.
             _ if technique.traces_paths() && layer != Annotation => Some(Lack::Rays),
             Value | Depth | Position | Normal | Label if is_sum => Some(Lack::OneNumber),

@@ -8,8 +8,10 @@ use super::blend::{Fragment, clear_color, merge};
 use super::composite::Composite;
 use super::isosurface::Surfaces;
 use super::merge::MAX_BATCH_SLICES;
+use super::pathtrace::{PathMeans, numbers_of};
 use super::splat::ViewPoints;
 use super::{AlikeCells, Settings};
+use crate::picture::LayerKind;
 use crate::real::Real;
 use crate::shaders::Frame;
 
@@ -116,6 +118,8 @@ pub struct Gathered<R> {
     pub light: R,
     /// How many it took; of several rays the mean.
     pub samples: f32,
+    /// What paths leave beside their picture.
+    pub paths: Option<PathMeans>,
 }
 
 impl<R: Real> Gathered<R> {
@@ -128,6 +132,7 @@ impl<R: Real> Gathered<R> {
             level: None,
             light: R::from_f64(1.0),
             samples: samples as f32,
+            paths: None,
         }
     }
 
@@ -140,6 +145,16 @@ impl<R: Real> Gathered<R> {
             level: found.first.map(|(level, _)| level),
             light: one,
             samples: found.samples as f32,
+            paths: None,
+        }
+    }
+
+    /// Of paths, the mean of them and what they leave beside it.
+    pub fn of_paths(accumulation: [R; 4], means: PathMeans) -> Self {
+        let [samples, ..] = numbers_of(LayerKind::Samples, &means);
+        Self {
+            paths: Some(means),
+            ..Self::of_blended(accumulation, samples)
         }
     }
 
@@ -151,6 +166,7 @@ impl<R: Real> Gathered<R> {
             level: None,
             light: R::from_f64(1.0),
             samples,
+            paths: None,
         }
     }
 }

@@ -323,8 +323,9 @@ fn every_command_of_the_page_of_weather_runs() {
 #[test]
 fn every_command_of_the_page_of_path_tracing_runs() {
     let (folder, _, lines) = run_page("docs/pathtrace.md");
-    assert_eq!(lines, 9);
+    assert_eq!(lines, 10);
     for name in [
+        "layers.exr",
         "head.png",
         "bone.png",
         "point.png",

@@ -130,8 +130,13 @@ fn what_paths_do_not_go_with_is_refused_by_name() {
     }
     let layer = "render phantom:sphere,n=8 --technique pathtrace -o q.exr --size 20x20 --aov";
     for (words, said) in [
-        ("depth", "depth"),
+        ("position", "--aov position needs"),
+        ("value", "--aov value needs"),
         ("noise --device reference", "--device reference"),
+        (
+            "noise,albedo --keep-samples s.samples",
+            "--aov noise,albedo",
+        ),
         (
             "transmittance --environment 1,1,1 --background environment",
             "--background",
@@ -140,8 +145,13 @@ fn what_paths_do_not_go_with_is_refused_by_name() {
         let ran = folder.run(&format!("{layer} {words}"));
         ran.assert_refused(2, &[said]);
     }
-    let ran = folder.run("render phantom:sphere,n=8 -o q.exr --size 20x20 --aov noise");
-    ran.assert_refused(2, &["--technique pathtrace"]);
+    for layer in [
+        "noise", "albedo", "direct", "indirect", "emission", "bounces",
+    ] {
+        let words = format!("render phantom:sphere,n=8 -o q.exr --size 20x20 --aov {layer}");
+        let ran = folder.run(&words);
+        ran.assert_refused(2, &["--technique pathtrace"]);
+    }
     let ran = folder.run("render phantom:sphere,n=8 --spp 3 -o q.png --size 20x20");
     ran.assert_done();
     assert!(

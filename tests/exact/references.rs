@@ -42,7 +42,12 @@ fn layers_of(shot: &PictureCase) -> Vec<LayerKind> {
         // It is of what is drawn beside the volume: tests/exact/geometry.rs.
         LayerKind::Line => false,
         // Of random paths.
-        LayerKind::Noise => false,
+        LayerKind::Noise
+        | LayerKind::Albedo
+        | LayerKind::Direct
+        | LayerKind::Indirect
+        | LayerKind::Emission
+        | LayerKind::Bounces => false,
         LayerKind::Samples => true,
     })
     .collect()

@@ -75,7 +75,12 @@ fn npy_files_are_what_numpy_writes() {
     assert_eq!(
         names(folder.path()),
         [
+            "out.albedo.npy",
+            "out.bounces.npy",
             "out.depth.npy",
+            "out.direct.npy",
+            "out.emission.npy",
+            "out.indirect.npy",
             "out.label.npy",
             "out.line.npy",
             "out.noise.npy",
@@ -142,7 +147,20 @@ fn exr_files_hold_the_same_floats_and_a_channel_for_each_layer() {
             "B",
             "G",
             "R",
+            "albedo.B",
+            "albedo.G",
+            "albedo.R",
+            "bounces",
             "depth",
+            "direct.B",
+            "direct.G",
+            "direct.R",
+            "emission.B",
+            "emission.G",
+            "emission.R",
+            "indirect.B",
+            "indirect.G",
+            "indirect.R",
             "label",
             "line",
             "noise",
@@ -159,7 +177,11 @@ fn exr_files_hold_the_same_floats_and_a_channel_for_each_layer() {
     );
     for layer in rich().layers {
         let (name, count) = (layer.kind.name(), layer.kind.numbers());
-        for (k, axis) in [".X", ".Y", ".Z"].into_iter().enumerate().take(count) {
+        let axes = match layer.kind.is_color() {
+            true => [".R", ".G", ".B"],
+            false => [".X", ".Y", ".Z"],
+        };
+        for (k, axis) in axes.into_iter().enumerate().take(count) {
             let name = format!("{name}{}", if count == 1 { "" } else { axis });
             let channel = channels.iter().find(|c| c.name.eq(name.as_str()));
             let found = channel.unwrap().sample_data.values_as_f32();

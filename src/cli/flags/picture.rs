@@ -20,7 +20,7 @@ pub struct PictureFlags {
     #[arg(long, value_name = "COLOR|none|environment", help_heading = "Picture")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub background: Option<Background>,
-    /// Layers beside the colours, for .exr and .npy
+    /// Layers beside the colours, for .exr and .npy; of --technique pathtrace means over the paths of a pixel, with their noise
     #[arg(
         long,
         value_name = "NAME,...",
@@ -171,6 +171,16 @@ pub enum LayerWord {
     Line,
     /// The standard error of luminance of --technique pathtrace
     Noise,
+    /// The albedo of the first collision of --technique pathtrace
+    Albedo,
+    /// Light of --technique pathtrace that was scattered once
+    Direct,
+    /// Light of --technique pathtrace that was scattered more often
+    Indirect,
+    /// Light of --technique pathtrace that matter sends out and nothing scatters
+    Emission,
+    /// How often paths of --technique pathtrace are scattered
+    Bounces,
 }
 
 impl LayerWord {
@@ -185,6 +195,11 @@ impl LayerWord {
             Self::Label => LayerKind::Label,
             Self::Line => LayerKind::Line,
             Self::Noise => LayerKind::Noise,
+            Self::Albedo => LayerKind::Albedo,
+            Self::Direct => LayerKind::Direct,
+            Self::Indirect => LayerKind::Indirect,
+            Self::Emission => LayerKind::Emission,
+            Self::Bounces => LayerKind::Bounces,
         }
     }
 }

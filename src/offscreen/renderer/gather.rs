@@ -78,6 +78,8 @@ impl Renderer<'_> {
             recordings.truncate(1);
         }
         let skip = self.skipped.skip();
+        let passes = self.passes.as_ref().expect("prepared");
+        let leaves_path_layers = scene.settings.technique.traces_paths() && passes.writes_layers();
         let behind = self
             .behind
             .as_ref()
@@ -85,6 +87,10 @@ impl Renderer<'_> {
         for recording in &mut recordings {
             recording.skip(skip);
             scene.tell_paths(&mut recording.frame);
+            if leaves_path_layers {
+                // Of tiles without matter too.
+                recording.frame.draws_all_tiles = 1;
+            }
             if let Some(ends) = &behind {
                 ends.tell(recording, grid.center());
             }
@@ -137,7 +143,6 @@ impl Renderer<'_> {
         let bricks = recordings.iter().enumerate().map(brick);
         let bricks = bricks.collect::<Result<Vec<_>, Error>>()?;
         let gpu = Arc::clone(self.device.gpu());
-        let passes = self.passes.as_ref().expect("prepared");
         let targets = self.targets.as_mut().expect("prepared");
         if pass == Pass::Count {
             targets.prepare_count(&gpu, passes)?;

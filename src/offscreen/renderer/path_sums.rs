@@ -145,17 +145,18 @@ impl PathSums {
         }
     }
 
-    /// What is said of each pixel beside its colour.
-    pub(super) fn layer(&self, kind: LayerKind) -> Layer {
+    /// The layers that follow from the sums themselves.
+    pub(super) fn layer(&self, kind: LayerKind) -> Option<Layer> {
         let values = match kind {
             LayerKind::Noise => {
                 let deviation = |sums| self.variance(sums).sqrt() as f32;
                 self.luminance.iter().map(deviation).collect()
             }
-            // The part of paths that have met nothing. Other layers are refused before.
-            _ => self.mean().iter().map(|[.., alpha]| 1.0 - alpha).collect(),
+            // The part of paths that have met nothing.
+            LayerKind::Transmittance => self.mean().iter().map(|[.., alpha]| 1.0 - alpha).collect(),
+            _ => return None,
         };
-        Layer { kind, values }
+        Some(Layer { kind, values })
     }
 }
 

@@ -8,9 +8,11 @@
 //! a block depends on their numbers alone, so that a picture that is gone on with has the blocks of one that never stopped.
 
 use super::Renderer;
+use super::path_layers::PathLayers;
 use super::path_sums::PathSums;
 use crate::offscreen::Error;
-use crate::offscreen::layer_rules::Clock;
+use crate::offscreen::layer_rules::{Clock, has_path_layers};
+use crate::picture::{Layer, LayerKind};
 use crate::scene::Scene;
 use crate::technique::pathtrace::{PathTracing, denoised, paths_at_once};
 use crate::technique::{InPixel, Settings};
@@ -96,17 +98,22 @@ impl<'v> Renderer<'v> {
         self.path_ends.traced
     }
 
-    /// The mean of all paths, without noise where that is asked for, and what it is made of.
+    /// The mean of all paths, without noise where that is asked for, and layers, which keep theirs.
     pub(super) fn picture_of_paths(
         &mut self,
         scene: &Scene,
+        wanted: &[LayerKind],
         clock: &mut Clock,
-    ) -> Result<(Vec<[f32; 4]>, PathSums), Error> {
+    ) -> Result<(Vec<[f32; 4]>, Vec<Layer>), Error> {
         let all = &scene.settings.path;
         let turns = self.device.gpu().limits().max_loop_turns;
         let at_once = paths_at_once(turns);
         let begun = Instant::now();
         let mut sums = std::mem::take(&mut self.path_ends.begun);
+        if has_path_layers(wanted) && sums.paths() > 0 {
+            return Err(Error::NoLayersOfBegun);
+        }
+        let mut layers = PathLayers::of(wanted);
         self.passes_done[0] = passes_of_paths(sums.paths(), turns) as usize;
         let has_ended = loop {
             if self.path_ends.are_reached(&sums, all, begun) {
@@ -116,13 +123,13 @@ impl<'v> Renderer<'v> {
             if sums.paths() + paths > all.samples {
                 break false;
             }
-            self.trace(scene, paths, &mut sums, clock)?;
+            self.trace(scene, paths, (&mut sums, &mut layers), clock)?;
             self.path_ends.keep(&sums, KEPT_EVERY);
         };
         self.path_ends.keep(&sums, Duration::ZERO);
         let rest = all.samples.saturating_sub(sums.paths());
         if !has_ended && rest > 0 {
-            self.trace(scene, rest, &mut sums, clock)?;
+            self.trace(scene, rest, (&mut sums, &mut layers), clock)?;
         }
         self.path_ends.traced = Traced {
             paths: sums.paths(),
@@ -133,7 +140,8 @@ impl<'v> Renderer<'v> {
             Some([first, second]) => denoised([&first, &second], width),
             None => sums.mean(),
         };
-        Ok((pixels, sums))
+        let layer = |&kind| sums.layer(kind).unwrap_or_else(|| layers.layer(kind));
+        Ok((pixels, wanted.iter().map(layer).collect()))
     }
 
     /// One more block.
@@ -141,7 +149,7 @@ impl<'v> Renderer<'v> {
         &mut self,
         scene: &Scene,
         paths: u32,
-        sums: &mut PathSums,
+        (sums, layers): (&mut PathSums, &mut PathLayers),
         clock: &mut Clock,
     ) -> Result<(), Error> {
         let all = &scene.settings.path;
@@ -158,7 +166,7 @@ impl<'v> Renderer<'v> {
         let (found, gpu_ms) = self.colors(block, InPixel::CENTER)?;
         clock.add(gpu_ms);
         sums.add(&found, paths);
-        Ok(())
+        self.add_path_layers(paths, layers)
     }
 }
 

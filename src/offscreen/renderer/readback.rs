@@ -79,7 +79,14 @@ impl Renderer<'_> {
                 LayerKind::Transmittance => 1.0 - left[3],
                 LayerKind::Samples => beside[3],
                 // They are refused before, or come of geometry.
-                LayerKind::Noise | LayerKind::Annotation | LayerKind::Line => f32::NAN,
+                LayerKind::Noise
+                | LayerKind::Albedo
+                | LayerKind::Direct
+                | LayerKind::Indirect
+                | LayerKind::Emission
+                | LayerKind::Bounces
+                | LayerKind::Annotation
+                | LayerKind::Line => f32::NAN,
             };
             let values: Vec<f32> = left.iter().zip(&beside).map(number).collect();
             let values = match kind {

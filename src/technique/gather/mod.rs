@@ -22,7 +22,7 @@ mod slices;
 
 pub(crate) use canvas::{Canvas, CanvasDesc, PICTURE};
 pub(crate) use player::Player;
-pub(crate) use rays::{LAYERS, depth_of_slices};
+pub(crate) use rays::{LAYERS, PATH_LAYERS, depth_of_slices};
 pub(super) use {
     rays::{RayPass, rays, rays_of},
     slices::slices,

@@ -6,7 +6,9 @@
 //!     rays       those tiles                                goes on in picture and layers
 //! ```
 
+use super::super::accumulation::accumulations;
 use super::super::field;
+use super::super::pathtrace::PATH_IMAGES;
 use super::super::projection::Projection;
 use super::super::raycast::Raycast;
 use super::super::{
@@ -14,11 +16,15 @@ use super::super::{
 };
 use super::{Bound, BrickPass, Canvas, CanvasDesc, Gather, GatherDesc, PICTURE, Part, Player};
 use crate::gpu::{Error, Gpu, Image, Resource, Tile, Use};
+use crate::shaders::Shader;
 use ash::vk;
 use std::sync::Arc;
 
 /// What compositing rays leave beside the picture: (what the mode keeps, depth or -1, transmittance, samples).
 pub(crate) const LAYERS: usize = 1;
+
+/// What paths leave beside theirs, an array of images ([`super::super::pathtrace::images_of`]).
+pub(crate) const PATH_LAYERS: usize = 2;
 
 /// The passes of a ray caster.
 ///
@@ -80,11 +86,18 @@ impl Gather for Rays {
         } else {
             [1; 2]
         };
-        let layers = match *self.pass {
-            RayPass::Raycast(_) => Some(accumulation(&self.gpu, kept, "beside rays")?),
-            RayPass::Projection(_) => None,
-        };
-        let mut canvas = Canvas::new(desc.extent, [picture].into_iter().chain(layers));
+        let mut images = vec![picture];
+        match *self.pass {
+            RayPass::Raycast(_) => images.push(accumulation(&self.gpu, kept, "beside rays")?),
+            RayPass::Projection(_) => {}
+            RayPass::Paths(_) => {
+                let count = PATH_IMAGES as u32;
+                // The search for tiles fills what other rays leave.
+                images.push(accumulation(&self.gpu, [1; 2], "beside rays")?);
+                images.push(accumulations(&self.gpu, kept, count, "layers of paths")?);
+            }
+        }
+        let mut canvas = Canvas::new(desc.extent, images);
         // What one picture reads of them comes before what the next one writes.
         let beside = desc.beside.and_then(|canvas| canvas.tiles.clone());
         canvas.tiles = Some(match beside {
@@ -101,12 +114,8 @@ impl Gather for Rays {
         host_depth: Option<Resource>,
     ) -> Result<Box<dyn Bound>, Error> {
         let tiles = canvas.tiles.as_ref().expect("made with the canvas");
-        let picture = canvas.image(PICTURE);
-        let layers = match *self.pass {
-            RayPass::Raycast(_) => canvas.image(LAYERS),
-            RayPass::Projection(_) => picture,
-        };
-        let bind = |inputs| self.pass.bind(inputs, [picture, layers], tiles, host_depth);
+        let images: Vec<_> = canvas.images().collect();
+        let bind = |inputs| self.pass.bind(inputs, &images, tiles, host_depth);
         Ok(Box::new(BoundRays {
             pass: Arc::clone(&self.pass),
             bricks: bricks.iter().map(bind).collect::<Result<_, _>>()?,
@@ -125,6 +134,7 @@ impl Bound for BoundRays {
         let images = PICTURE..=match *self.pass {
             RayPass::Raycast(_) => LAYERS,
             RayPass::Projection(_) => PICTURE,
+            RayPass::Paths(_) => PATH_LAYERS,
         };
         // SAFETY: the caller's promises.
         unsafe {
@@ -148,13 +158,15 @@ impl Bound for BoundRays {
     }
 }
 
-/// Rays that composite, or that project.
+/// Rays that composite, that project, or that begin paths.
 #[derive(Debug)]
 pub(in crate::technique) enum RayPass {
     /// Colours, and what lies beside them.
     Raycast(Raycast),
     /// One number a ray, which the resolve classifies.
     Projection(Projection),
+    /// Colours, and the layers of paths.
+    Paths(Raycast),
 }
 
 impl RayPass {
@@ -166,6 +178,11 @@ impl RayPass {
     /// The same for one that composites.
     pub(in crate::technique) fn picture_of(gpu: &Arc<Gpu>, shader: &str) -> Result<Self, Error> {
         Ok(Self::Raycast(Raycast::of_shader(gpu, shader)?))
+    }
+
+    /// Paths.
+    pub(in crate::technique) fn paths(gpu: &Arc<Gpu>, shader: &Shader) -> Result<Self, Error> {
+        Ok(Self::Paths(Raycast::of_rays(gpu, shader)?))
     }
 
     /// Both of what may be seen outside of the box of the volume too.
@@ -225,21 +242,28 @@ impl RayPass {
         Self::new(gpu, settings, &variant)
     }
 
-    /// Binds inputs and the images that the rays fill, of projections the first alone.
+    /// Binds inputs and the images that the rays fill, in the order of the canvas.
     pub fn bind(
         &self,
         inputs: &Inputs,
-        [picture, layers]: [&Image; 2],
+        images: &[&Image],
         tiles: &RayTiles,
         host_depth: Option<Resource>,
     ) -> Result<RayBindings, Error> {
         // In place of a depth that is not looked at.
         let stand_in = |image: &Image| host_depth.unwrap_or(Resource::sampled_or_read(image));
+        let picture = images[PICTURE];
         match self {
             Self::Raycast(pass) => {
+                let layers = images[LAYERS];
                 pass.bind_behind(inputs, picture, layers, tiles, stand_in(layers))
             }
             Self::Projection(pass) => pass.bind_behind(inputs, picture, tiles, stand_in(picture)),
+            Self::Paths(pass) => {
+                let layers = images[LAYERS];
+                let images = [picture, layers, images[PATH_LAYERS]];
+                pass.bind_paths(inputs, images, tiles, stand_in(layers))
+            }
         }
     }
 
@@ -256,7 +280,9 @@ impl RayPass {
         // SAFETY: the caller's promises.
         unsafe {
             match self {
-                Self::Raycast(pass) => pass.record_tiles(cmd, bindings, offset, extent, tiles),
+                Self::Raycast(pass) | Self::Paths(pass) => {
+                    pass.record_tiles(cmd, bindings, offset, extent, tiles)
+                }
                 Self::Projection(pass) => pass.record_tiles(cmd, bindings, offset, extent, tiles),
             }
         }

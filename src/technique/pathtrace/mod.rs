@@ -10,6 +10,7 @@
 mod denoise;
 mod elementary;
 mod lamp;
+mod layers;
 mod levels;
 mod majorants;
 mod phase;
@@ -24,6 +25,7 @@ mod walk;
 pub(crate) use denoise::denoised;
 pub(crate) use elementary::turn_of;
 pub use lamp::{Lamp, LampShape};
+pub(crate) use layers::{PATH_IMAGES, PathMeans, images_of, numbers_of};
 pub(crate) use phase::phase_value;
 pub use sky::{SkyError, SkyPicture};
 
@@ -163,7 +165,8 @@ fn gather(desc: &GatherDesc) -> Result<Box<dyn Gather>, gpu::Error> {
         "pathtrace.{}.{}.{transfer}{levels}",
         variant.filter, variant.holes
     );
-    Ok(rays_of(desc.gpu, RayPass::picture_of(desc.gpu, &name)?))
+    let pass = RayPass::paths(desc.gpu, variant.shader(&name))?;
+    Ok(rays_of(desc.gpu, pass))
 }
 
 /// How many paths a pixel has in one pass at most.

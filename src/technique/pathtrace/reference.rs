@@ -3,6 +3,7 @@
 use super::SkyPicture;
 use super::elementary::{around, turned};
 use super::lamp::{is_lamp, light_of_lamp};
+use super::layers::PathLayers;
 use super::phase::{phase_cosine, phase_value};
 use super::random::random_numbers;
 use super::surface::{reflected, reflection, reflection_density};
@@ -29,18 +30,18 @@ pub(crate) fn pixel<R: Real>(of: &impl Samples<R>, pixel: [R; 2]) -> Gathered<R>
     let corner = pixel.map(|x| x.to_i32() as u32);
     let number = corner[1] * frame.extent_pixels[0] + corner[0];
     let mut sum = [R::from_f64(0.0); 4];
-    let mut turns = 0;
+    let mut layers = PathLayers::none();
     for sample in frame.path_first..frame.path_first + frame.path_count {
         let key = [number, sample, 0, frame.path_seed];
-        let path = Path::traced(of, corner, key);
+        let path = Path::traced(of, corner, key, layers);
         let [r, g, b] = path.radiance;
         let alpha = R::from_f64(f64::from(u8::from(path.has_met)));
         let found = [r, g, b, alpha];
         sum = std::array::from_fn(|c| sum[c] + found[c]);
-        turns += path.draw;
+        layers = path.layers;
     }
     let count = R::from_f64(f64::from(frame.path_count));
-    Gathered::of_blended(sum.map(|s| s / count), turns as f32)
+    Gathered::of_paths(sum.map(|s| s / count), layers.means(count))
 }
 
 struct Path<R> {
@@ -51,10 +52,17 @@ struct Path<R> {
     has_met: bool,
     /// Of its direction, per steradian.
     density: R,
+    /// Of the pixel so far.
+    layers: PathLayers<R>,
 }
 
 impl<R: Real> Path<R> {
-    fn traced(of: &impl Samples<R>, corner: [u32; 2], mut key: [u32; 4]) -> Self {
+    fn traced(
+        of: &impl Samples<R>,
+        corner: [u32; 2],
+        mut key: [u32; 4],
+        layers: PathLayers<R>,
+    ) -> Self {
         let frame = of.frame();
         let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));
         let [x, y, u, v] = random_numbers::<R>(key);
@@ -68,14 +76,12 @@ impl<R: Real> Path<R> {
             draw: 1,
             has_met: false,
             density: zero,
+            layers,
         };
         while let Some((color, place)) = path.collide(of, &mut walk, &mut key) {
-            path.has_met = true;
             if frame.path_bounces == 0 && frame.emission_point_count == 0 {
                 path.radiance = times(path.weight, color);
-            }
-            if path.bounces == frame.path_bounces {
-                return path;
+                path.layers.add_light(path.radiance, 0);
             }
             let albedo = R::from_f32(frame.path_albedo);
             let albedo = color.map(|c| c * albedo);
@@ -86,6 +92,13 @@ impl<R: Real> Path<R> {
                 true => Some(walk.levels.normal(frame, incoming)),
                 false => normal_at(of, place, incoming, numbers[0]),
             };
+            if !path.has_met {
+                path.layers.add_first(albedo, normal, walk.t);
+            }
+            path.has_met = true;
+            if path.bounces == frame.path_bounces {
+                return path;
+            }
             let (mut from, rank) = (walk.world.at(walk.t), walk.levels.before);
             if let (true, Some(normal)) = (walk.levels.has_crossed(), normal) {
                 let by = R::from_f64(LEAVES_BY) * R::from_f32(frame.smallest_spacing);
@@ -113,10 +126,12 @@ impl<R: Real> Path<R> {
                 let through = path.through(of, walk, &mut key);
                 let brought = times(times(path.weight, light), through);
                 path.radiance = add(path.radiance, brought);
+                path.layers.add_light(brought, path.bounces + 1);
             }
             key[2] = NUMBERS_OF_DRAW * path.draw + OF_DIRECTION;
             let numbers = random_numbers::<R>(key);
             path.bounces += 1;
+            path.layers.add_bounce();
             let (direction, weight) = at.scattered(frame, numbers);
             path.density = at.density(frame, direction);
             path.weight = std::array::from_fn(|c| path.weight[c] * weight[c]);
@@ -131,8 +146,11 @@ impl<R: Real> Path<R> {
             };
             walk = Walk::along(frame, next, rank);
         }
-        let sky = path.sky(of, walk.world.direction);
-        path.radiance = std::array::from_fn(|c| path.radiance[c] + path.weight[c] * sky[c]);
+        let sky = times(path.weight, path.sky(of, walk.world.direction));
+        path.radiance = add(path.radiance, sky);
+        if path.has_met {
+            path.layers.add_light(sky, path.bounces);
+        }
         path.has_met |= frame.path_sky_shown != 0;
         path
     }
@@ -177,12 +195,15 @@ impl<R: Real> Path<R> {
             let Some((found, place)) = Matter::behind(of, walk, u)? else {
                 continue;
             };
+            self.count(walk);
             let Matter {
                 color,
                 chances,
                 shine,
             } = found;
-            self.radiance = add(self.radiance, times(self.weight, shine));
+            let light = times(self.weight, shine);
+            self.radiance = add(self.radiance, light);
+            self.layers.add_light(light, self.bounces);
             let chance = self.chance(of.frame(), chances);
             let one = R::from_f64(1.0);
             let is_real = v < chance;
@@ -221,6 +242,7 @@ impl<R: Real> Path<R> {
             let Some((Matter { chances, .. }, _)) = found else {
                 continue;
             };
+            self.count(&walk);
             through = times(through, chances.map(|c| one - c));
             let most = through[0].max(through[1].max(through[2]));
             if most < least {
@@ -230,6 +252,13 @@ impl<R: Real> Path<R> {
             if through.iter().all(|&t| t <= zero) {
                 return through;
             }
+        }
+    }
+
+    /// Counts what a walk has found, where it is no surface.
+    fn count(&mut self, walk: &Walk<R>) {
+        if !walk.levels.has_crossed() {
+            self.layers.add_sample();
         }
     }
 

@@ -9,7 +9,7 @@ use super::registry::TechniqueDesc;
 use super::{Inputs, Mode, RayBindings, RayTiles, SampleInputs, SampleKind, ShaderVariant, SkipBy};
 use crate::gpu::{Error, Gpu, Image, Resource, Tile};
 use crate::resident::TextureLayout;
-use crate::shaders::shader;
+use crate::shaders::{Shader, shader};
 use ash::vk;
 use std::sync::Arc;
 
@@ -109,8 +109,13 @@ impl Raycast {
 
     /// Rays of another kind that leave a picture and what lies beside it.
     pub(super) fn of_shader(gpu: &Arc<Gpu>, name: &str) -> Result<Self, Error> {
+        Self::of_rays(gpu, shader(name))
+    }
+
+    /// The same by the shader itself.
+    pub(super) fn of_rays(gpu: &Arc<Gpu>, rays: &Shader) -> Result<Self, Error> {
         Ok(Self {
-            pass: TilePass::new(gpu, shader(name), Nothing::Beyond)?,
+            pass: TilePass::new(gpu, rays, Nothing::Beyond)?,
         })
     }
 
@@ -153,6 +158,23 @@ impl Raycast {
         host_depth: Resource,
     ) -> Result<RayBindings, Error> {
         let images = [("picture", picture), ("layers", layers)];
+        self.pass.bind(inputs, tiles, &images, host_depth)
+    }
+
+    /// The same for paths, which leave an array of images of their own beside the picture; `layers` is what the search for tiles
+    /// fills.
+    pub(super) fn bind_paths(
+        &self,
+        inputs: &Inputs,
+        [picture, layers, path_layers]: [&Image; 3],
+        tiles: &RayTiles,
+        host_depth: Resource,
+    ) -> Result<RayBindings, Error> {
+        let images = [
+            ("picture", picture),
+            ("layers", layers),
+            ("path_layers", path_layers),
+        ];
         self.pass.bind(inputs, tiles, &images, host_depth)
     }
 

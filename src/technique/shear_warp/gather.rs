@@ -112,7 +112,7 @@ impl Gather for ShearWarp {
         let Passes { gpu, rays, .. } = &*self.0;
         let tiles = canvas.tiles.as_ref().expect("made with the canvas");
         let images = [canvas.image(BASE), canvas.image(BASE_LAYERS)];
-        let bind = |inputs| rays.bind(inputs, images, tiles, None);
+        let bind = |inputs| rays.bind(inputs, &images, tiles, None);
         let ring = Resource::Uniform(bricks[0].ring);
         let warp = |warp: &Warp, from, to| {
             let bound = warp.bind(gpu, ring, canvas.image(from), canvas.image(to))?;

@@ -13,7 +13,7 @@ use stratavox::technique::pathtrace::PathTracing;
 use stratavox::technique::{Filter, Level, PerMode, Settings};
 
 /// Levels of a value, an albedo and an opacity.
-fn with_levels(path: PathTracing, levels: &[(f64, [f64; 3], f64)]) -> Settings {
+pub fn with_levels(path: PathTracing, levels: &[(f64, [f64; 3], f64)]) -> Settings {
     let level = |&(value, albedo, opacity): &(f64, [f64; 3], f64)| Level {
         value,
         srgb: albedo.map(encode_srgb),

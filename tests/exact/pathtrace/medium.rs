@@ -1,7 +1,8 @@
 //! Matter of which the transfer function says what it does to light: extinction of each colour, albedo, light of its own.
 
 use super::{
-    around_blobs, assert_near, at, blobs, drawn, eye, layer, light, lit, mean, scene, settings,
+    around_blobs, assert_near, assert_same_paths, at, blobs, drawn, eye, layer, light, lit, mean,
+    scene, settings,
 };
 use stratavox::offscreen::reference;
 use stratavox::picture::Picture;
@@ -180,15 +181,7 @@ fn the_shader_traces_the_paths_of_its_reference_through_a_medium() {
         ..settings(lit())
     };
     let scene = scene(&volume, &function, &camera, &settings, [60, 50]);
-    let picture = drawn(&scene);
-    let reference = reference::render::<f32>(&scene).expect("a picture");
-    let pairs = || picture.pixels.iter().zip(&reference.pixels);
-    let parted = pairs().filter(|(a, b)| (0..4).any(|c| (a[c] - b[c]).abs() > 1e-3));
-    let share = parted.count() as f64 / picture.pixels.len() as f64;
-    println!("{share} of the pixels have a path that parts");
-    // Of each path 0.2 % at most; a pixel has four.
-    assert!(share < 0.008, "{share}");
-    assert!(pairs().filter(|(a, _)| a[3] > 0.0).count() > 1000);
+    assert_same_paths("three extinctions", &scene, 1000);
 }
 
 fn assert_even(picture: &Picture) {
