@@ -63,14 +63,6 @@ pub trait Real:
     fn or(self, _other: Self) -> Self {
         self
     }
-    /// What `work` finds, whose last comparisons are decided inside of any error: a search for a root.
-    fn undecided<T>(work: impl FnOnce() -> T) -> T {
-        work()
-    }
-    /// This, found as a root of a function that has the value `over` and the slope `slope` here.
-    fn as_root(self, _over: Self, _slope: Self) -> Self {
-        self
-    }
     /// Whether slices are blended in a target that keeps less than this type does, and merged by batches
     /// ([`technique::merge`](crate::technique::merge)).
     const IS_MERGED: bool = false;

@@ -41,11 +41,11 @@ pub const SCATTER_FAULTS: &[(&str, Fault, &str)] = &[
         PLANE,
     ),
     (
-        "majorants are those of a cell's own voxels",
+        "majorants are those of the least value of a cell",
         Shader(
-            "macro_cells.wgsl",
-            "let halo = vec3(cell_grid.halo);",
-            "let halo = vec3(0);",
+            "lib/majorants.wgsl",
+            "clamp(bins, vec2(0.0), vec2(last))",
+            "clamp(bins, vec2(0.0), vec2(last)).xx",
         ),
         CELLS,
     ),
@@ -98,15 +98,6 @@ pub const SCATTER_FAULTS: &[(&str, Fault, &str)] = &[
         "light of a ball begins behind it",
         Shader("lib/lamp.wgsl", "select(-chord, chord, is_inside)", "chord"),
         LAMPS,
-    ),
-    (
-        "paths of a later pass stand for all before them",
-        Shader(
-            "pathtrace.wgsl",
-            "(f32(frame.path_before) + count)",
-            "count",
-        ),
-        TWO_LOBES,
     ),
     (
         "the last piece of a way to a light is dropped",

@@ -12,8 +12,7 @@
 //! What a device contracts has a rounding less. Where an operation's result is a number of f32 and its operands are
 //! exact, so is it. A comparison or a `floor` whose outcome lies inside of the error sets a mark, and all numbers of
 //! the pixel that come after are infinitely uncertain: the answer depends on rounding. A minimum and a maximum do not:
-//! they are as continuous as their operands. A search for a root sets no mark: where it ends is off by what the function is
-//! off by there, over its slope, on both sides.
+//! they are as continuous as their operands.
 //!
 //! The CPU references that are written for [`Real`] run with it as they are. [`Real::to_f32`] gives the error, rounded up: a
 //! picture of these numbers is a picture of what is allowed.
@@ -336,23 +335,6 @@ impl<const R: bool, const F16: bool> Real for Tracked<R, F16> {
         Self::with(self.value, self.error.max(apart + other.error))
     }
 
-    fn undecided<T>(work: impl FnOnce() -> T) -> T {
-        let before = HANGS.get();
-        let found = work();
-        HANGS.set(before);
-        found
-    }
-
-    /// Newton's last step is off by what the function is off by here, over its slope; so may be that of a device.
-    fn as_root(self, over: Self, slope: Self) -> Self {
-        let least = slope.value.abs() - slope.error;
-        let off = match least > 0.0 {
-            true => 2.0 * (over.value.abs() + over.error) / least,
-            false => f64::INFINITY,
-        };
-        Self::with(self.value, off + EPS * self.value.abs())
-    }
-
     const IS_MERGED: bool = F16;
 
     fn in_target(self) -> Self {
@@ -411,44 +393,6 @@ mod tests {
             let largest = (base.value + base.error).powi(23);
             assert!(found.error >= largest - found.value, "{part}: {found:?}");
             assert!(found.error <= 1.001 * largest + LEAST, "{part}: {found:?}");
-        }
-    }
-
-    /// x^2 = 2 by Newton, halving where a step leaves the ends.
-    #[test]
-    fn a_root_is_as_uncertain_as_its_function_over_the_slope() {
-        fn root<R: Real>(two: R) -> R {
-            let n = |x: f64| R::from_f64(x);
-            let searched = || {
-                let [mut near, mut far] = [n(1.0), n(2.0)];
-                let mut s = n(1.5);
-                for _ in 0..6 {
-                    let over = s * s - two;
-                    if over >= n(0.0) {
-                        far = s
-                    } else {
-                        near = s
-                    }
-                    let newton = s - over / (s + s);
-                    let is_between = newton >= near && newton <= far;
-                    s = if is_between {
-                        newton
-                    } else {
-                        n(0.5) * (near + far)
-                    };
-                }
-                s
-            };
-            let found = R::undecided(searched);
-            let s = R::from_f64(found.to_f64());
-            found.as_root(s * s - two, s + s)
-        }
-        Number::begin();
-        let tracked = root(Number::with(2.0, 1e-4));
-        assert!(tracked.ended().error < 1e-3, "{tracked:?}");
-        for two in [2.0 - 1e-4, 2.0, 2.0 + 1e-4] {
-            let off = (f64::from(root(two as f32)) - tracked.value).abs();
-            assert!(off <= tracked.error, "{two}: {off}, {tracked:?}");
         }
     }
 

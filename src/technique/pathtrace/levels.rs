@@ -151,7 +151,7 @@ fn corners<R: Real>(
     let is_nearest = of.settings().filter == Filter::Nearest;
     // Along an axis on which a ray stays at voxel centres the upper corner has no weight.
     let stays: [bool; 3] =
-        std::array::from_fn(|k| is_nearest || (direction[k] == zero && place[k] == zero));
+        std::array::from_fn(|k| is_nearest || (place[k] == zero && direction[k] == zero));
     let mut corners = [zero; 8];
     for (i, corner) in corners.iter_mut().enumerate() {
         let voxel = std::array::from_fn(|k| {
@@ -199,15 +199,7 @@ fn met<R: Real>(
 }
 
 /// Where a cubic that only rises or only falls between two ends has a value.
-fn crossing<R: Real>(cubic: Cubic<R>, level: R, ends: [R; 2]) -> R {
-    let found = R::undecided(|| searched(cubic, level, ends));
-    let s = R::from_f64(found.to_f64());
-    let [_, a1, a2, a3] = cubic.0;
-    let slope = a1 + s * (R::from_f64(2.0) * a2 + s * a3);
-    found.as_root(cubic.at(s) - level, slope)
-}
-
-fn searched<R: Real>(cubic: Cubic<R>, level: R, [mut near, mut far]: [R; 2]) -> R {
+fn crossing<R: Real>(cubic: Cubic<R>, level: R, [mut near, mut far]: [R; 2]) -> R {
     let (zero, half, one, two) = (
         R::from_f64(0.0),
         R::from_f64(0.5),
