@@ -2,7 +2,7 @@
 
     python3 brightness.py PROGRAM VOLUMES
 
-Draws each once more, 128 x 128 pixels with 16 paths, as linear light (npy, premultiplied), takes the stop of light of the look,
+Draws each once more, 128 x 128 pixels with 8 paths, as linear light (npy, premultiplied), takes the stop of light of the look,
 and writes a table. Of pixels that let less than half of what lies behind through: Y is .2126 R + .7152 G + .0722 B.
 
     mean       sum of Y / sum of alpha, over all pixels of alpha over .02
@@ -23,7 +23,7 @@ PICTURES = {
     "skull": ["ct-cranium/cranium.nrrd"],
     "torso": ["ct-torso/torso-2x.mha", "--preset", "ct-bone", "--azimuth", "20"],
     "brain": ["mri-mni152/mni152-t1.nii.gz"],
-    "walnut": ["ct-walnut/walnut.mhd", "--tf", str(HERE / "walnut-cinematic.json"), "--crop", "0,128,0,84,0,114"],
+    "walnut": ["ct-walnut/walnut.mhd", "--tf", str(HERE / "walnut-cinematic.json"), "--crop", "0,128,23,96,0,114"],
     "nuclei": ["tiff-nuclei/img3d.tif"],
     "seismic": ["seismic-f3/f3.nrrd"],
 }
@@ -32,7 +32,7 @@ PICTURES = {
 def drawn(program, volumes, words):
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "picture.npy"
-        of_look = ["--look", "cinematic", "--spp", "16", "--size", "128x128", "--progress", "none"]
+        of_look = ["--look", "cinematic", "--spp", "8", "--size", "128x128", "--progress", "none"]
         command = [program, "render", str(Path(volumes) / words[0]), *of_look, *words[1:], "-o", str(path)]
         subprocess.run(command, check=True, stderr=subprocess.DEVNULL)
         return np.load(path).astype(float)

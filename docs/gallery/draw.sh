@@ -51,7 +51,7 @@ cinematic() {
 cinematic skull ct-cranium/cranium.nrrd
 cinematic torso ct-torso/torso-2x.mha --preset ct-bone --azimuth 20
 cinematic brain mri-mni152/mni152-t1.nii.gz
-cinematic walnut ct-walnut/walnut.mhd --tf "$here/walnut-cinematic.json" --crop 0,128,0,84,0,114
+cinematic walnut ct-walnut/walnut.mhd --tf "$here/walnut-cinematic.json" --crop 0,128,23,96,0,114
 cinematic nuclei tiff-nuclei/img3d.tif
 cinematic seismic seismic-f3/f3.nrrd
 

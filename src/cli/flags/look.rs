@@ -95,8 +95,8 @@ const DENSITY: f64 = 0.5;
 /// Of skin, bone and plastic.
 const F0: f64 = 0.04;
 const ROUGHNESS: f64 = 0.45;
-/// Matter that is lit from one side and takes a part of the light at each bounce: a sixth of the light of white, on average of
-/// six volumes (`docs/gallery.md`), where photographs have a third.
+/// What is lit from one side and takes a part of the light at each bounce is a ninth to a sixth as bright as white without it, as
+/// five volumes show (`docs/gallery.md`); with it a quarter to a third.
 const EXPOSURE: f64 = 1.0;
 /// Paths a pixel that tell what is noise.
 const LEAST_DENOISED: u32 = 4;
