@@ -95,8 +95,8 @@ const DENSITY: f64 = 0.5;
 /// Of skin, bone and plastic.
 const F0: f64 = 0.04;
 const ROUGHNESS: f64 = 0.45;
-/// What is lit from one side and takes a part of the light at each bounce is a ninth to a sixth as bright as white without it, as
-/// five volumes show (`docs/gallery.md`); with it a quarter to a third.
+/// What is lit from one side and takes a part of the light at each bounce is a fifteenth to a sixth as bright as white without it, as
+/// five volumes show (`docs/gallery.md`); with it an eighth to a third.
 const EXPOSURE: f64 = 1.0;
 /// Paths a pixel that tell what is noise.
 const LEAST_DENOISED: u32 = 4;

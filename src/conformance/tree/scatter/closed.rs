@@ -35,7 +35,7 @@ albedo (8 k sqrt 3 + 22) e.";
 
 const OF_CELLS: &str = "Each path meets matter by the chance p = 1 - e^-D, D the optical depth of its ray, which is the same for all rays of the \
 picture, and independent of the others: of N paths it is a binomial number, N p on average, of the standard deviation sqrt(N p (1 - p)). \
-Six of these: a right device is outside once in 10^8 choices of the seed, and the seed is one. Colours are those of the function where a \
+Six of these: a right device is outside less than once in 10^8 choices of the seed, and the seed is one. Colours are those of the function where a \
 path meets matter: alpha times these, within 4 e, e = 2^-23, which sums, a quotient and the decoding of colours (24 e) may be off by.";
 
 /// All three.
