@@ -39,3 +39,34 @@ at_45 splats --technique splat --sheets axis
 at_45 splats-cured --technique splat
 at_45 bresenham --lattice bresenham
 at_45 bresenham-cured --lattice bresenham --samples-per-voxel 4
+
+# By path tracing, with the flags of a look.
+cinematic() {
+    name=$1
+    input=$2
+    shift 2
+    "$program" render "$volumes/$input" --look cinematic --spp 32 --size 360x360 --force --progress none \
+        -o "$here/cinematic-$name.png" "$@"
+}
+cinematic skull ct-cranium/cranium.nrrd
+cinematic torso ct-torso/torso-2x.mha --preset ct-bone --azimuth 20
+cinematic brain mri-mni152/mni152-t1.nii.gz
+cinematic walnut ct-walnut/walnut.mhd --tf "$here/walnut-cinematic.json" --crop 0,128,23,96,0,114
+cinematic nuclei tiff-nuclei/img3d.tif
+cinematic seismic seismic-f3/f3.nrrd
+
+# One cloud, by ever more of what light does in it.
+ladder() {
+    name=$1
+    shift
+    "$program" render phantom:storm,n=64 --variable cloud --time 4 --tf "$here/storm.json" --tone neutral --exposure 0.5 \
+        --background 0.1,0.14,0.22 --size 300x180 --force --progress none -o "$here/ladder-$name.png" "$@"
+}
+sun="--light camera:-0.7,0.7,0.1 --environment 0.06,0.09,0.15"
+traced="--technique pathtrace --spp 64 --denoise-picture"
+ladder emission --shading none
+ladder single --scattering single $sun
+ladder 2 $traced $sun --bounces 2
+ladder 4 $traced $sun --bounces 4
+ladder 16 $traced $sun --bounces 16
+ladder all $traced $sun

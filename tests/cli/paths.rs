@@ -21,7 +21,13 @@ fn a_saved_scene_of_the_cinematic_look_draws_the_same_picture() {
     let read = |name| fs::read(folder.path(name)).expect("a file");
     assert!(read("a.png") == read("b.png"));
     let scene = String::from_utf8(read("s.json")).expect("text");
-    for word in ["pathtrace", "surface-scattering", "environment", "camera:"] {
+    for word in [
+        "pathtrace",
+        "surface-scattering",
+        "environment",
+        "camera:",
+        "exposure",
+    ] {
         let underscored = word.replace('-', "_");
         assert!(
             scene.contains(word) || scene.contains(&underscored),
@@ -37,6 +43,7 @@ fn flags_win_over_the_look_and_change_the_picture() {
     for words in [
         "",
         "--seed 1",
+        "--exposure 0",
         "--bounces 1",
         "--bounces 0",
         "--density-scale 3",

@@ -11,6 +11,7 @@ mod shaders;
 mod states;
 mod table;
 mod table_probes;
+mod table_scatter;
 mod transfers;
 
 use ash::vk;
@@ -22,6 +23,7 @@ pub use answers::ANSWERS;
 pub use states::State;
 pub use table::{CLAMPED_FAULTS, FAULTS};
 pub use table_probes::PROBE_FAULTS;
+pub use table_scatter::SCATTER_FAULTS;
 
 /// The real function of that name, called.
 macro_rules! behind {

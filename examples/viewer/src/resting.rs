@@ -90,7 +90,7 @@ impl Look {
     }
 }
 
-/// Matter, surfaces and light of `stratavox render --look cinematic`, which also takes out noise and has a curve of tones.
+/// Matter, surfaces and light of `stratavox render --look cinematic`, which also takes out noise, has a curve of tones and a stop more of light.
 fn settings(look: &Look) -> Option<Settings> {
     let is_possible = look.scatters
         && look.technique == Technique::Raycast

@@ -75,6 +75,7 @@ impl SceneFlags {
         path.f0.get_or_insert(F0);
         path.roughness.get_or_insert(ROUGHNESS);
         self.picture.tone.get_or_insert(ToneWord::Neutral);
+        self.picture.exposure.get_or_insert(EXPOSURE);
         path.denoise_picture |= path.spp.is_none_or(|paths| paths >= LEAST_DENOISED);
         if !self.light.has_lights() {
             self.light
@@ -94,5 +95,8 @@ const DENSITY: f64 = 0.5;
 /// Of skin, bone and plastic.
 const F0: f64 = 0.04;
 const ROUGHNESS: f64 = 0.45;
+/// What is lit from one side and takes a part of the light at each bounce is a fifteenth to a sixth as bright as white without it, as
+/// five volumes show (`docs/gallery.md`); with it an eighth to a third.
+const EXPOSURE: f64 = 1.0;
 /// Paths a pixel that tell what is noise.
 const LEAST_DENOISED: u32 = 4;

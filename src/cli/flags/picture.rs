@@ -33,7 +33,7 @@ pub struct PictureFlags {
     #[arg(long, value_name = "8|16", value_parser = bits_of, help_heading = "Picture")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bit_depth: Option<Bits>,
-    /// Stops of light: colours of PNG and films are multiplied by 2 to this power before they are coded [default: 0]
+    /// Stops of light: colours of PNG and films are multiplied by 2 to this power before they are coded [default: 0; 1 under --look cinematic]
     #[arg(long, value_name = "EV", value_parser = stops, allow_hyphen_values = true, help_heading = "Picture")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub exposure: Option<f64>,

@@ -103,7 +103,15 @@ pub const SHEAR_WARP: Placement = placement(
     Order::BackToFront,
 );
 
-/// All of them.
+/// Collisions at random places, and no lattice.
+pub const PATHS: Placement = placement(
+    "pathtrace",
+    Technique::Pathtrace,
+    Lattice::Ray,
+    Order::BackToFront,
+);
+
+/// All whose samples lie on a lattice.
 pub fn all_placements() -> impl Iterator<Item = Placement> {
     PLACEMENTS.into_iter().chain([SHEAR_WARP])
 }

@@ -8,6 +8,7 @@ mod points;
 mod probe;
 mod reference;
 mod relation;
+mod scatter;
 mod seen;
 mod shadow;
 mod slab;
@@ -32,5 +33,6 @@ pub fn cases() -> Vec<Case> {
     cases.extend(reference::cases());
     cases.extend(splat::cases());
     cases.extend(points::cases());
+    cases.extend(scatter::cases());
     cases
 }

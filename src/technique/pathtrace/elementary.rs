@@ -5,7 +5,7 @@ use crate::real::{Real, add, scale};
 
 /// -ln(x) of 2^-24 <= x <= 1, a number of 24 bits.
 pub fn minus_ln<R: Real>(x: R) -> R {
-    let bits = x.to_f32().to_bits();
+    let bits = (x.to_f64() as f32).to_bits();
     let mut exponent = (bits >> 23) as f64 - 127.0;
     let mut m = f32::from_bits(bits & 0x7f_ffff | 0x3f80_0000);
     if m >= std::f32::consts::SQRT_2 {

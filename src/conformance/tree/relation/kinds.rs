@@ -74,6 +74,18 @@ impl Kind {
         }
     }
 
+    /// Whether pictures of random paths stand in it.
+    pub fn is_for_paths(self) -> bool {
+        matches!(
+            self,
+            Self::Repeated
+                | Self::InSmallSubmissions
+                | Self::PermutedColors
+                | Self::ScaledValues
+                | Self::ScaledWorld
+        )
+    }
+
     /// Whether a picture of bricks stands in it.
     pub fn is_of_bricks(self) -> bool {
         matches!(self, Self::InBricks | Self::LitInBricks)

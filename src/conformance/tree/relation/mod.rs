@@ -53,7 +53,22 @@ pub fn cases() -> Vec<Case> {
             }
         }
     }
+    cases.extend(of_paths());
     cases
+}
+
+/// Those that random paths stand in: all that change no number that they draw.
+fn of_paths() -> impl Iterator<Item = Case> {
+    let kinds = Kind::ALL
+        .into_iter()
+        .filter(|(_, kind)| kind.is_for_paths());
+    kinds.map(|(word, kind)| {
+        let (placement, mode) = (ground::PATHS, Mode::Composite);
+        let name = format!("relation.{word}.{}.composite.perspective", placement.word);
+        Case::new(name, move |bed| {
+            pair::measure(bed, kind, placement, mode, true)
+        })
+    })
 }
 
 fn has(placement: Placement, mode: Mode) -> bool {

@@ -9,9 +9,10 @@ use crate::conformance::measurement::{Bound, Measurement, Pictures};
 use crate::conformance::oracle::{Numbers, PictureCase};
 use crate::conformance::test_bed::TestBed;
 use crate::gpu::Caps;
-use crate::picture::{LayerKind, Picture};
-use crate::technique::{Filter, Lattice, Level, Mode, Order, Shading};
-use crate::transfer::{ColorPoint, OpacityPoint, TransferFunction};
+use crate::picture::{ColorSpace, LayerKind, Picture};
+use crate::technique::pathtrace::PathTracing;
+use crate::technique::{Filter, Lattice, Level, Light, Mode, Order, Shading};
+use crate::transfer::{ColorPoint, OpacityPoint, Phase, TransferFunction};
 use glam::{DAffine3, DVec3, dvec3};
 
 const BOTH: &str = "Both pictures are roundings of the same numbers: they may be apart by the sum of what each may be off by. ";
@@ -94,6 +95,10 @@ pub fn measure(
             })
             .into();
     });
+    let shot = match placement.technique.traces_paths() {
+        true => of_paths(&shot),
+        false => shot,
+    };
     let mut function = ground::ramps();
     if mode == Mode::Xray {
         // Integrals of 20 voxels: not all of them at the end of the function.
@@ -122,6 +127,23 @@ pub fn measure(
         false => both_running_errors(bed, &sight.shot)?,
     };
     Ok(compare(kind, &sight.shot, bound, first, second))
+}
+
+/// White lights, surfaces and grey solid ones, four paths a pixel.
+fn of_paths(shot: &PictureCase) -> PictureCase {
+    let light = |towards| Light::of_world(towards, [1.0; 3]);
+    shot.with(|settings| {
+        settings.color_space = ColorSpace::Linear;
+        let levels = &mut settings.per_mode.levels;
+        levels.iter_mut().for_each(|level| level.srgb = [0.9; 3]);
+        settings.path = PathTracing {
+            samples: 4,
+            phase: Phase::HenyeyGreenstein(0.4),
+            lights: vec![light(dvec3(1.0, 2.0, 0.5)), light(dvec3(-1.0, 0.2, 1.0))],
+            surface: 2.0,
+            ..PathTracing::default()
+        };
+    })
 }
 
 fn same_bits(bed: &mut TestBed, kind: Kind, sight: &Sight) -> Result<(Rough, Rough), Stop> {
