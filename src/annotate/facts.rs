@@ -50,7 +50,7 @@ impl Facts {
             time_names: header.time_names.clone(),
             is_patient: header.is_patient,
             is_earth: header.is_earth,
-            degree_lengths: header.degree_lengths,
+            degree_lengths: header.earth_degree_lengths(),
             length_metres: header.length_metres,
             channels,
             is_color: matches!(header.meaning, ComponentKind::Rgb | ComponentKind::Rgba),

@@ -1,7 +1,7 @@
 //! What a source says of itself before any voxel is read: `value = stored * slope + intercept` at
 //! `world = world_from_voxel voxel`.
 
-use super::{MapProjection, VoxelBox, VoxelType};
+use super::{MapKind, MapProjection, VoxelBox, VoxelType};
 use glam::DAffine3;
 
 /// What a source holds. Nothing in it can be wrong: dims are not zero, the affine can be inverted.
@@ -42,8 +42,8 @@ pub struct Header {
     pub is_labels: bool,
     /// True where the world is a piece of the Earth in kilometres: x east, y north, z up.
     pub is_earth: bool,
-    /// World units of a degree of longitude along x and of latitude along y, both counted from 0; `None` where points along
-    /// that axis have no such coordinate of their own.
+    /// World units of a degree of longitude along x and of latitude along y, both counted from 0, from a moved pole where
+    /// [`Self::map`] has one; `None` where points along that axis have no such coordinate of their own.
     pub degree_lengths: [Option<f64>; 2],
     /// True where the file says how its axes lie in a patient: x right, y anterior, z superior.
     pub is_patient: bool,
@@ -70,6 +70,14 @@ pub struct Header {
 }
 
 impl Header {
+    /// [`Self::degree_lengths`] where degrees are those of the Earth: none where the pole of the grid is moved.
+    pub fn earth_degree_lengths(&self) -> [Option<f64>; 2] {
+        match self.map {
+            Some(map) if map.kind == MapKind::LatitudeLongitude => [None; 2],
+            _ => self.degree_lengths,
+        }
+    }
+
     /// One scalar volume of one time, the stored numbers being the values, about which nothing else is known.
     pub fn new(
         format: Format,

@@ -60,7 +60,7 @@ pub use histogram::Histogram;
 pub use joint::{JointHistogram, steepest_gradient};
 pub use limits::Limits;
 pub use magnitude::Magnitude;
-pub use map::{MapCorner, MapKind, MapProjection};
+pub use map::{MapCorner, MapKind, MapProjection, MovedPole};
 pub use octree::{Address, AddressError, Leaf, LevelCount, MixedNode, NodeState, Octree};
 pub use part::VoxelPart;
 pub(crate) use part::part_of;

@@ -54,6 +54,7 @@ mod memory;
 mod messages;
 mod messages_inputs;
 mod mixed;
+mod moved_pole;
 mod opacity;
 mod pairs;
 mod paths;

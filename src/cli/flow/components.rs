@@ -8,7 +8,7 @@ use super::super::{Error, progress::Progress};
 use super::flags::WindWords;
 use super::variable::Variables;
 use crate::flow::wind::WindNames;
-use crate::volume::{ComponentKind, Grid, Header, Source, is_same_grid};
+use crate::volume::{ComponentKind, Grid, Header, MapKind, Source, is_same_grid};
 
 /// What the three components are read from, with the number of the component.
 pub(super) struct Components {
@@ -49,6 +49,7 @@ pub(super) fn components(
             None => return vectors(variables, first, progress),
         },
     };
+    check_along_rows(&names, header)?;
     let up = names.up.as_deref();
     for name in [Some(names.east.as_str()), Some(names.north.as_str()), up] {
         check_there(name.unwrap_or_default(), header)?;
@@ -69,6 +70,28 @@ pub(super) fn components(
         up: up.map(open).transpose()?,
         names: [names.east, names.north, names.up.unwrap_or_default()],
     })
+}
+
+/// Refuses components along parallels and meridians of the Earth where those of the grid are others.
+fn check_along_rows(names: &WindNames, header: &Header) -> Result<(), Error> {
+    let is_turned = header
+        .map
+        .is_some_and(|map| matches!(map.kind, MapKind::LatitudeLongitude | MapKind::Curvilinear));
+    let mut all = header.variables.iter().zip(&header.variable_standard_names);
+    let is_of_earth = |name: &str| name.starts_with("eastward_") || name.starts_with("northward_");
+    let found = all.find(|(name, standard)| {
+        [&names.east, &names.north].contains(name) && is_of_earth(standard)
+    });
+    match found.filter(|_| is_turned) {
+        Some((name, standard)) => Err(Error::usage(
+            format!(
+                "--flow: {name} is {standard}, along parallels and meridians of the Earth, and rows of the grid are others: \
+                 wanted x_wind and y_wind, along its rows and columns"
+            ),
+            "--wind U,V[,W|none] names other variables",
+        )),
+        None => Ok(()),
+    }
 }
 
 /// Refuses the name of a variable that the file has not.

@@ -331,7 +331,7 @@ impl FlowFlags {
 fn geography(wind: &Wind) -> Geography {
     let header = &wind.header;
     Geography {
-        degrees: match header.degree_lengths {
+        degrees: match header.earth_degree_lengths() {
             [Some(x), Some(y)] => Some([x, y]),
             _ => None,
         },

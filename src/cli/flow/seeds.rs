@@ -96,7 +96,8 @@ fn of_file(path: &Path, header: &Header) -> Result<Vec<(DVec3, Option<f64>)>, Er
         if table.are == SeedPlace::World {
             return Ok(p);
         }
-        let ([Some(x), Some(y)], Some(metres)) = (header.degree_lengths, header.length_metres)
+        let ([Some(x), Some(y)], Some(metres)) =
+            (header.earth_degree_lengths(), header.length_metres)
         else {
             let problem = "it has degrees, and the grid of the wind has none: x,y,z are wanted";
             return Err(failed(problem.to_owned()));

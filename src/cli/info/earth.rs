@@ -15,6 +15,13 @@ fn words(map: &MapProjection) -> String {
     if let Some(longitude) = map.standard_longitude {
         words.push_str(&format!(", standard longitude {}", short(longitude)));
     }
+    if let Some(pole) = map.pole {
+        words.push_str(&format!(
+            ", north pole at latitude {}, longitude {}",
+            short(pole.latitude),
+            short(pole.longitude)
+        ));
+    }
     words
 }
 

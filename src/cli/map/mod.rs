@@ -138,8 +138,8 @@ impl MapWords {
         }
         let projection = Projection::of(header).ok_or_else(|| {
             Error::usage(
-                "--map: the volume has no place on the Earth: wanted latitudes and longitudes, or a WRF file with MAP_PROJ, \
-                 TRUELAT1 and XLAT",
+                "--map: the volume has no place on the Earth: wanted latitudes and longitudes, those of a moved pole with its grid_mapping, or a WRF \
+                 file with MAP_PROJ, TRUELAT1 and XLAT",
                 "leave out --map",
             )
         })?;
@@ -287,7 +287,7 @@ fn projected<'a>(
 ) -> Flat {
     let turns: &[f64] = match projection {
         Projection::Degrees(_) => &[-360.0, 0.0, 360.0],
-        Projection::Map { .. } => &[0.0],
+        Projection::Map { .. } | Projection::MovedPole { .. } => &[0.0],
     };
     let is_near = |line: &Vec<[f64; 2]>| {
         (0..2).all(|k| {

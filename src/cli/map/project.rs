@@ -5,13 +5,15 @@
 //! Mercator         x = R cos(p1) l,  y = R cos(p1) ln tan(45 + p / 2)
 //! Lambert          n = ln(cos p1 / cos p2) / ln(tan(45 + p2 / 2) / tan(45 + p1 / 2)),  n = sin p1 where p1 = p2
 //!                  r = R cos p1 / n * (tan(45 + p1 / 2) / tan(45 + p / 2))^n,  x = r sin(n l),  y = -r cos(n l)
+//! moved pole       as degrees, of longitude and latitude from that pole (`volume::MovedPole`)
 //! stereographic    r = R (1 + sin|p1|) cos p / (1 + sin(s p)),  x = r sin l,  y = -s r cos l,  s the sign of p1
 //! ```
 //!
 //! l the longitude from the one that runs straight north, p1 and p2 the true latitudes, on a sphere of 6370 km as WRF has it.
 //! Snyder, "Map Projections: A Working Manual", USGS Professional Paper 1395, 1987, chapters 7, 15, 21.
 
-use crate::volume::{Header, MapKind, MapProjection};
+use crate::volume::{Header, MapKind, MapProjection, MovedPole};
+use glam::DVec3;
 
 /// Of a step.
 const MOST_OFF: f64 = 0.05;
@@ -26,6 +28,12 @@ pub(super) const FINE: f64 = 0.25;
 pub(super) enum Projection {
     /// Lengths of a degree along x and y.
     Degrees([f64; 2]),
+    /// The same from another pole, around a longitude of the grid.
+    MovedPole {
+        pole: MovedPole,
+        degree_lengths: [f64; 2],
+        middle: f64,
+    },
     /// A map, and what lies in the origin of the world.
     Map {
         kind: MapKind,
@@ -39,7 +47,14 @@ impl Projection {
     /// That of a volume; `None` where it has no place on the Earth.
     pub fn of(header: &Header) -> Option<Self> {
         if let Some(map) = &header.map {
-            return Self::of_map(map);
+            return match (map.pole, header.degree_lengths) {
+                (Some(pole), [Some(x), Some(y)]) => Some(Self::MovedPole {
+                    pole,
+                    degree_lengths: [x, y],
+                    middle: middle(header) / x,
+                }),
+                _ => Self::of_map(map),
+            };
         }
         match header.degree_lengths {
             [Some(x), Some(y)] if header.is_earth => Some(Self::Degrees([x, y])),
@@ -50,7 +65,7 @@ impl Projection {
     fn of_map(map: &MapProjection) -> Option<Self> {
         let first = map.true_latitudes[0]?;
         let [latitude, longitude] = map.center?;
-        if map.kind == MapKind::LatitudeLongitude {
+        if matches!(map.kind, MapKind::LatitudeLongitude | MapKind::Curvilinear) {
             return None;
         }
         let unmoved = Self::Map {
@@ -72,7 +87,7 @@ impl Projection {
                 longitude,
                 origin,
             }),
-            Self::Degrees(_) => None,
+            Self::Degrees(_) | Self::MovedPole { .. } => None,
         }
     }
 
@@ -90,7 +105,8 @@ impl Projection {
     fn is_over_edge(&self, a: f64, b: f64) -> bool {
         match *self {
             Self::Degrees(_) => (b - a).abs() > 180.0,
-            Self::Map {
+            Self::MovedPole { .. }
+            | Self::Map {
                 kind: MapKind::PolarStereographic,
                 ..
             } => false,
@@ -100,8 +116,26 @@ impl Projection {
         }
     }
 
+    /// True where two places that lie beside each other on the Earth do not on the map.
+    fn are_apart(&self, a: [f64; 2], b: [f64; 2]) -> bool {
+        match *self {
+            Self::MovedPole { degree_lengths, .. } => {
+                (b[0] - a[0]).abs() > 180.0 * degree_lengths[0]
+            }
+            _ => false,
+        }
+    }
+
     /// The latitude in degrees of x and y of the world.
     pub fn latitude(&self, [x, y]: [f64; 2]) -> f64 {
+        if let Self::MovedPole {
+            pole,
+            degree_lengths: [along_x, along_y],
+            ..
+        } = *self
+        {
+            return pole.earth_from_grid([x / along_x, y / along_y])[1];
+        }
         let Self::Map {
             kind,
             true_latitudes,
@@ -131,13 +165,22 @@ impl Projection {
                 let far = x.hypot(y) / (RADIUS * (1.0 + p1.abs().sin()));
                 side * (std::f64::consts::FRAC_PI_2 - 2.0 * far.atan())
             }
-            MapKind::LatitudeLongitude => f64::NAN,
+            MapKind::LatitudeLongitude | MapKind::Curvilinear => f64::NAN,
         };
         latitude.to_degrees()
     }
 
     /// x and y of a longitude and a latitude in degrees, world; `None` where the map has no such place.
     pub fn place(&self, [longitude, latitude]: [f64; 2]) -> Option<[f64; 2]> {
+        if let Self::MovedPole {
+            pole,
+            degree_lengths,
+            middle,
+        } = *self
+        {
+            let place = pole.grid_from_earth([longitude, latitude], middle);
+            return Some([0, 1].map(|k| place[k] * degree_lengths[k]));
+        }
         let Self::Map {
             kind,
             true_latitudes,
@@ -168,7 +211,7 @@ impl Projection {
                 let r = RADIUS * (1.0 + p1.abs().sin()) * p.cos() / (1.0 + (side * p).sin());
                 [r * l.sin(), -side * r * l.cos()]
             }
-            MapKind::LatitudeLongitude => return None,
+            MapKind::LatitudeLongitude | MapKind::Curvilinear => return None,
         };
         let place = [x - origin[0], y - origin[1]];
         // Poles of maps that have none are far away.
@@ -208,7 +251,7 @@ pub(super) fn projected_line(
     turn: f64,
     mut give: impl FnMut(Vec<[f64; 2]>),
 ) {
-    let is_bent = matches!(projection, Projection::Map { .. });
+    let is_bent = !matches!(projection, Projection::Degrees(_));
     let mut part = Vec::new();
     let mut before: Option<[f64; 2]> = None;
     for &[longitude, latitude] in line {
@@ -229,7 +272,13 @@ pub(super) fn projected_line(
                 give(std::mem::take(&mut part));
             }
             match projection.place(at) {
-                Some(place) => part.push(place),
+                Some(place) => {
+                    let last = part.last().copied().unwrap_or(place);
+                    if projection.are_apart(last, place) {
+                        give(std::mem::take(&mut part));
+                    }
+                    part.push(place);
+                }
                 None => give(std::mem::take(&mut part)),
             }
             last = at[0];
@@ -237,6 +286,12 @@ pub(super) fn projected_line(
         before = Some(place);
     }
     give(part);
+}
+
+/// x of the middle of the grid, world.
+fn middle(header: &Header) -> f64 {
+    let middle = 0.5 * DVec3::from_array(header.dims.map(f64::from));
+    header.world_from_voxel.transform_point3(middle).x
 }
 
 /// tan(45 + p / 2).
@@ -272,6 +327,7 @@ mod tests {
                 standard_longitude: Some(20.0),
                 center: Some([-3.0, 25.0]),
                 corner: None,
+                pole: None,
             };
             let projection = Projection::of_map(&map).expect("a map");
             for latitude in [-20.0, -1.0, 0.0, 1.0, 30.0] {
@@ -293,6 +349,7 @@ mod tests {
                 standard_longitude: Some(-90.0),
                 center: Some([40.0, -90.0]),
                 corner: None,
+                pole: None,
             };
             Projection::of_map(&map).expect("a map")
         };
@@ -377,6 +434,7 @@ mod tests {
                     world: wanted,
                     step: 10.0,
                 }),
+                pole: None,
             };
             let projection = Projection::of_map(&map).expect("a map");
             let [latitude, longitude] = center;

@@ -26,19 +26,7 @@ pub(super) fn flattened(
     x: &str,
     y: &str,
 ) -> Option<[Coordinate; 2]> {
-    let words = variable.attributes.text("coordinates")?;
-    let find = |is_it: fn(&str) -> bool| {
-        words
-            .split_whitespace()
-            .filter_map(|name| in_scope(arrays, variable, name).next())
-            .find(|other| {
-                let dimensions = other.dimensions.as_slice();
-                matches!(dimensions, [first, second] if first.name == y && second.name == x)
-                    && is_it(other.attributes.text("units").unwrap_or(""))
-                    && other.count() <= MAX_POINTS
-            })
-    };
-    let (latitude, longitude) = (find(is_north)?, find(is_east)?);
+    let [latitude, longitude] = latitude_longitude(arrays, variable, x, y)?;
     let [rows, columns] = latitude.dimensions.as_slice() else {
         return None;
     };
@@ -66,6 +54,28 @@ pub(super) fn flattened(
         is_projection: true,
     };
     Some([coordinate(x, columns, east), coordinate(y, rows, north)])
+}
+
+/// The latitudes and longitudes of a variable over the dimensions `y` and `x`.
+pub(super) fn latitude_longitude<'a>(
+    arrays: &'a dyn Arrays,
+    variable: &Variable,
+    x: &str,
+    y: &str,
+) -> Option<[&'a Variable; 2]> {
+    let words = variable.attributes.text("coordinates")?;
+    let find = |is_it: fn(&str) -> bool| {
+        words
+            .split_whitespace()
+            .filter_map(|name| in_scope(arrays, variable, name).next())
+            .find(|other| {
+                let dimensions = other.dimensions.as_slice();
+                matches!(dimensions, [first, second] if first.name == y && second.name == x)
+                    && is_it(other.attributes.text("units").unwrap_or(""))
+                    && other.count() <= MAX_POINTS
+            })
+    };
+    Some([find(is_north)?, find(is_east)?])
 }
 
 /// A latitude and a longitude, in degrees.

@@ -23,6 +23,7 @@ mod grid;
 mod knots;
 mod missing;
 mod model;
+mod moved_pole;
 mod open;
 mod place;
 mod regular;

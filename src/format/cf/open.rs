@@ -7,6 +7,7 @@ use super::curved::flattened;
 use super::derive::{available, recipe};
 use super::grid::{Grid, Role};
 use super::model::{Arrays, Kind, Variable};
+use super::moved_pole;
 use super::place::{Place, place};
 use super::regular::Regular;
 use super::time::Clock;
@@ -50,10 +51,11 @@ fn open_checked(
     }
     let mut notes = Vec::new();
     let dims = dims(arrays.as_ref(), &choice)?;
-    let place = placed(arrays.as_ref(), &choice, dims, &mut notes)?;
+    let (place, map) = placed(arrays.as_ref(), &choice, dims, &mut notes)?;
     let mut header = Header::new(format, dims, VoxelType::F32, place.world_from_voxel);
     header.is_earth = place.is_earth;
     header.degree_lengths = place.degrees;
+    header.map = map;
     header.derived = available(arrays.as_ref());
     header.heights_are_pressures = place.are_pressures;
     header.notes = notes;
@@ -164,7 +166,7 @@ fn placed(
     choice: &Choice,
     dims: [u32; 3],
     notes: &mut Vec<String>,
-) -> Result<Place, Problem> {
+) -> Result<(Place, Option<MapProjection>), Problem> {
     let mut coordinates = [None, None, None];
     for (role, dimension) in choice.roles.iter().zip(&choice.variable.dimensions) {
         if let Role::Space(k) = *role
@@ -182,19 +184,22 @@ fn placed(
         let found = choice.variable.dimensions.get(at)?;
         Some(found.name.as_str())
     };
+    let names = name_of(0).zip(name_of(1));
     let [x, y, _] = &coordinates;
+    let mut map = None;
     if x.is_none()
         && y.is_none()
-        && let (Some(x), Some(y)) = (name_of(0), name_of(1))
+        && let Some((x, y)) = names
         && let Some([east, north]) = flattened(arrays, &choice.variable, x, y)
     {
         notes.push(
             "latitudes and longitudes bend: the grid is drawn flat, with the mean steps of its middle row and column".to_owned(),
         );
         [coordinates[0], coordinates[1]] = [Some(east), Some(north)];
+        map = Some(MapProjection::of_kind(MapKind::Curvilinear));
     }
     let spanned = place(dims, &coordinates);
-    spanned.ok_or_else(|| {
+    let spanned = spanned.ok_or_else(|| {
         let wanted = "coordinates that span a volume";
         invalid(
             arrays.format(),
@@ -202,7 +207,11 @@ fn placed(
             wanted,
             &choice.variable.name,
         )
-    })
+    })?;
+    if let Some((x, y)) = names.filter(|_| spanned.degrees != [None; 2]) {
+        map = moved_pole::map(arrays, &choice.variable, [x, y], &spanned, notes);
+    }
+    Ok((spanned, map))
 }
 
 /// Longer lists of moments are not read.

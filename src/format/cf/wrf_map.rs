@@ -46,6 +46,7 @@ pub(super) fn map(arrays: &dyn Arrays, notes: &mut Vec<String>) -> Option<MapPro
         standard_longitude: number("STAND_LON"),
         center: found.or(said).map(|(lat, lon)| [lat, lon]),
         corner: corner(arrays),
+        pole: None,
     })
 }
 

@@ -133,9 +133,11 @@ fn line_of(
         let Some(Transform { scale, translate }) = transform else {
             return checked(position);
         };
-        at = [0, 1].map(|k| at[k] + position[k]);
-        let [longitude, latitude] = [0, 1].map(|k| at[k] * scale[k] + translate[k]);
-        checked([snapped(longitude, 180.0), snapped(latitude, 90.0)])
+        let ([x, y], [step_x, step_y]) = (at, position);
+        let ([a, b], [c, d]) = (scale, translate);
+        at = [x + step_x, y + step_y];
+        let [x, y] = at;
+        checked([snapped(a * x + c, 180.0), snapped(b * y + d, 90.0)])
     };
     arc.into_iter().map(place).collect()
 }
