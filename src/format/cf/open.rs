@@ -15,7 +15,8 @@ use super::values::Values;
 use super::wrf;
 use crate::format::problem::{at, invalid};
 use crate::volume::{
-    Format, Header, Limits, Problem, ReadError, Source, VolumeSelection, VoxelType,
+    Format, Header, Limits, MapKind, MapProjection, Problem, ReadError, Source, VolumeSelection,
+    VoxelType,
 };
 use std::sync::Arc;
 
