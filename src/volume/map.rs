@@ -23,8 +23,8 @@ pub struct MapProjection {
 }
 
 impl MapProjection {
-    /// One of which nothing else is known.
-    pub(crate) fn of_kind(kind: MapKind) -> Self {
+    /// A map of which nothing but its kind is known.
+    pub fn of_kind(kind: MapKind) -> Self {
         Self {
             kind,
             true_latitudes: [None; 2],
