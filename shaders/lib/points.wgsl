@@ -16,12 +16,15 @@ fn color_at(value: f32) -> vec3<f32> {
 
 // A colour as it is blended.
 fn shown(srgb: vec3<f32>) -> vec3<f32> {
-    return select(linear_from_srgb(srgb), srgb, frame.color_space_is_display != 0u);
+    if frame.color_space_is_display != 0u {
+        return srgb;
+    }
+    return linear_from_srgb(srgb);
 }
 
 // Interpolates numbers[first .. first + count] at a value: colour points (value, red, green, blue) come first, then
-// opacity points (value, opacity, 0, 0). Of none all are 0: what stands there is something else. Without branches, which a
-// driver may take long to compile in a loop (`docs/conformance.md`).
+// opacity points (value, opacity, 0, 0). Of none all are 0: what stands there is something else. No branch asks for that: a driver
+// takes twice as long to compile for each one in a loop (`docs/conformance.md`).
 fn between_points(value: f32, first: u32, count: u32, is_step: u32) -> vec4<f32> {
     // Invariant: points before `low` are at or below the value, points from `high` on are above it.
     var low = first;
@@ -34,11 +37,15 @@ fn between_points(value: f32, first: u32, count: u32, is_step: u32) -> vec4<f32>
             high = middle;
         }
     }
-    let is_between = low != first && low != first + count && is_step == 0u;
-    let at = select(max(low, first + 1u) - 1u, 0u, count == 0u);
-    let left = transfer_numbers.d[at];
-    let right = transfer_numbers.d[select(at, low, is_between)];
+    if low == first {
+        let lowest = transfer_numbers.d[select(first, 0u, count == 0u)];
+        return select(lowest, vec4(0.0), count == 0u);
+    }
+    let left = transfer_numbers.d[low - 1u];
+    if low == first + count || is_step != 0u {
+        return left;
+    }
+    let right = transfer_numbers.d[low];
     let part = (value - left.x) / (right.x - left.x);
-    let found = select(left, left + part * (right - left), is_between);
-    return select(found, vec4(0.0), count == 0u);
+    return left + part * (right - left);
 }
