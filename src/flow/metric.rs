@@ -14,7 +14,7 @@ use super::error::FieldError;
 use super::snapshot::Columns;
 use crate::volume::Grid;
 use glam::{DMat3, DVec3};
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Where the components of the wind point, and how the map of the world stretches them.
 #[derive(Clone, Debug, PartialEq)]
@@ -142,8 +142,8 @@ impl GridMetric {
         })
     }
 
-    /// The rows of voxels along y that lie off the poles, world y of the first and the last; all of them where the world is
-    /// no grid of degrees.
+    /// World y between which there is a wind: where the box of a grid of degrees reaches a pole the first or the last row off it,
+    /// else infinite.
     pub fn off_poles(&self, grid: &Grid) -> [f64; 2] {
         let Stretch::Degrees {
             radians_per_world, ..
@@ -156,11 +156,28 @@ impl GridMetric {
                 .transform_point3(DVec3::new(0.5, f64::from(j) + 0.5, 0.5))
                 .y
         };
+        let all = || (0..grid.dims[1]).map(row);
+        let half = 0.5 * grid.world_from_voxel.matrix3.y_axis.y.abs();
+        // The box goes on for half a row: only where that reaches a pole it ends before.
+        let reaches =
+            |y: f64, side: f64| (side * y + half) * radians_per_world >= FRAC_PI_2 - AT_POLE;
         let is_off = |y: &f64| (y * radians_per_world).cos() > AT_POLE;
-        let rows = (0..grid.dims[1]).map(row).filter(is_off);
-        rows.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], y| {
+        let rows = all().filter(is_off);
+        let [low, high] = rows.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], y| {
             [low.min(y), high.max(y)]
-        })
+        });
+        [
+            if all().any(|y| reaches(y, -1.0)) {
+                low
+            } else {
+                f64::NEG_INFINITY
+            },
+            if all().any(|y| reaches(y, 1.0)) {
+                high
+            } else {
+                f64::INFINITY
+            },
+        ]
     }
 
     /// World x of both sides of a grid of degrees that closes around the globe: 360 of them, to a thousandth of a
@@ -239,4 +256,40 @@ pub(super) fn check_axes(grid: &Grid, what: &'static str) -> Result<(), FieldErr
         return Err(FieldError::Turned { what });
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DAffine3;
+
+    /// Of rows at these latitudes, from the first in steps, in degrees.
+    fn off_poles(first: f64, step: f64, rows: u32) -> [f64; 2] {
+        let grid = Grid {
+            dims: [4, rows, 2],
+            world_from_voxel: DAffine3::from_mat3_translation(
+                DMat3::from_diagonal(DVec3::new(1.0, step, 1.0)),
+                DVec3::new(0.0, first - 0.5 * step, 0.0),
+            ),
+        };
+        let metric = Metric {
+            world_per_metre: 1.0,
+            horizontal: Horizontal::Degrees { x: 1.0, y: 1.0 },
+            vertical: Vertical::Metres,
+        };
+        let metric = GridMetric::new(metric, &grid).expect("a metric");
+        metric.off_poles(&grid)
+    }
+
+    #[test]
+    fn only_a_box_that_reaches_a_pole_ends_before_it() {
+        let open = [f64::NEG_INFINITY, f64::INFINITY];
+        assert_eq!(off_poles(31.5, 0.75, 67), open);
+        assert_eq!(off_poles(80.0, -1.0, 40), open);
+        // Rows on both poles, rows half a step off them, and one pole alone, in both orders.
+        assert_eq!(off_poles(-90.0, 10.0, 19), [-80.0, 80.0]);
+        assert_eq!(off_poles(89.5, -1.0, 180), [-89.5, 89.5]);
+        assert_eq!(off_poles(-90.0, 10.0, 12), [-80.0, f64::INFINITY]);
+        assert_eq!(off_poles(90.0, -10.0, 12), [f64::NEG_INFINITY, 80.0]);
+    }
 }

@@ -269,3 +269,19 @@ fn beside_a_volume_that_is_drawn_from_its_file_is_what_is_beside_one_in_memory()
         assert!(draw("--stream", "b.png") == wanted, "{words}");
     }
 }
+
+#[test]
+fn what_goes_up_beside_a_pair_that_is_said_is_said_too() {
+    let folder = Folder::new();
+    for (pair, wanted) in [
+        ("u,v", "the wind is u, v, w"),
+        ("v,u", "the wind is v, u, without an upward variable"),
+        ("v,u,w", "the wind is v, u, w"),
+    ] {
+        let ran = folder.run(&format!(
+            "convert {STORM} -o a.csv --force --flow stream --flow-seeds grid:2,2,1 --wind {pair}"
+        ));
+        ran.assert_done();
+        assert!(ran.err.contains(wanted), "{pair}: {ran:#?}");
+    }
+}

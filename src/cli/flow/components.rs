@@ -39,9 +39,12 @@ pub(super) fn components(
         Some(words) => WindNames {
             east: words.east.clone(),
             north: words.north.clone(),
+            // What goes up beside another pair is not known to go with this one.
             up: match &words.up {
                 Some(up) => up.clone(),
-                None => found.and_then(|found| found.up),
+                None => found
+                    .filter(|found| [&found.east, &found.north] == [&words.east, &words.north])
+                    .and_then(|found| found.up),
             },
         },
         None => match found.filter(|_| variables.input.variable.is_none()) {

@@ -85,7 +85,7 @@ impl From<CoastFile> for PathBuf {
 }
 
 /// The parts of a line between edges of the map, each the shorter way around the Earth.
-fn without_edges(line: Vec<[f64; 2]>) -> Lines {
+pub(super) fn without_edges(line: Vec<[f64; 2]>) -> Lines {
     let mut parts = Vec::new();
     let mut part: Vec<[f64; 2]> = Vec::new();
     let mut before: Option<[f64; 2]> = None;

@@ -1,6 +1,7 @@
 //! Coast and borders of the Earth, 1 : 50 million (Natural Earth, public domain), inside of the program:
 //! `tests/fixtures/coast/make.py` made the bytes and says how they are packed.
 
+use super::coast::without_edges;
 use std::sync::OnceLock;
 
 /// Lines of longitudes and latitudes in degrees.
@@ -29,7 +30,7 @@ pub(super) fn earth() -> &'static Earth {
             translate: [number(2), number(3)],
         };
         Earth {
-            coast: reader.lines(),
+            coast: reader.lines().into_iter().flat_map(without_edges).collect(),
             borders: reader.lines(),
         }
     })
@@ -51,7 +52,8 @@ impl Reader<'_> {
         (0..self.varint())
             .map(|_| {
                 at = at.map(|n| n + self.step());
-                [0, 1].map(|k| at[k] as f64 * self.scale[k] + self.translate[k])
+                let place = [0, 1].map(|k| at[k] as f64 * self.scale[k] + self.translate[k]);
+                [snapped(place[0], 180.0), snapped(place[1], 90.0)]
             })
             .collect()
     }
@@ -72,6 +74,14 @@ impl Reader<'_> {
             }
         }
         n
+    }
+}
+
+/// The edge of the map, where the number is as good as on it.
+fn snapped(degrees: f64, edge: f64) -> f64 {
+    match (degrees.abs() - edge).abs() < 1e-9 {
+        true => edge.copysign(degrees),
+        false => degrees,
     }
 }
 
@@ -98,6 +108,13 @@ mod tests {
         ] {
             assert!(nearest(&earth.coast, place) < 0.2, "{place:?}");
         }
+        // Polygons are cut along the 180th meridian and closed at the south pole: that is no coast.
+        let is_edge = |pair: &[[f64; 2]]| {
+            let is_on = |k: usize, edge: f64| pair.iter().all(|p| (p[k].abs() - edge).abs() < 1e-6);
+            is_on(0, 180.0) || is_on(1, 90.0)
+        };
+        let pairs = earth.coast.iter().flat_map(|line| line.windows(2));
+        assert_eq!(pairs.filter(|pair| is_edge(pair)).count(), 0);
         // The border on the 49th parallel, and none in the middle of France.
         assert!(nearest(&earth.borders, [-100.65, 49.0]) < 3.0);
         assert!(nearest(&earth.borders, [2.5, 47.0]) > 2.0);
