@@ -202,7 +202,11 @@ fn heights(count: u32, z: Option<&Coordinate>, width: f64, notes: &mut Vec<Strin
             "the levels {name} are only numbers: they are spread evenly over a quarter of the width, the first of them {first}"
         ));
     }
-    evenly(count, if is_rising { step } else { -step })
+    // The lowest lies at the height 0, where the ground of maps is.
+    match is_rising {
+        true => evenly(count, step),
+        false => evenly(count, step).into_iter().rev().collect(),
+    }
 }
 
 /// Coordinates that are in no way of the Earth: one unit for all three, or metres, or numbers as they are.
