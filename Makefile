@@ -219,7 +219,7 @@ second:
 	    && VK_DRIVER_FILES=$(BOTH) VK_ICD_FILENAMES=$(BOTH) $(TEST) --test cli $(SHOWN) two_drivers
 
 # $(call judged,name,arguments): the whole baseline by the program of the tests.
-judged = mkdir -p target/conformance && target/debug/stratavox conformance --force --jobs 1 \
+judged = mkdir -p target/conformance && target/debug/stratavox conformance --force --jobs 1 --timeout 600 \
 	    --waivers docs/conformance-waivers.json --json target/conformance/$(1).json $(2)
 verified = target/debug/stratavox conformance verify target/conformance/$(1).json
 

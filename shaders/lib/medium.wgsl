@@ -7,10 +7,9 @@
 fn extinctions_at(value: f32) -> vec3<f32> {
     let first = frame.color_point_count;
     let found = between_points(value, first, frame.opacity_point_count, frame.interpolation_is_step);
-    if frame.opacity_is_extinction != 0u {
-        return found.yzw / frame.reference_length;
-    }
-    return vec3(extinction_of(found.y, frame.reference_length));
+    let of_opacity = vec3(extinction_of(found.y, frame.reference_length));
+    // No branch, as in `between_points`.
+    return select(of_opacity, found.yzw / frame.reference_length, frame.opacity_is_extinction != 0u);
 }
 
 fn emission_at(value: f32) -> vec3<f32> {
