@@ -180,6 +180,13 @@ fn what_a_moved_pole_leaves_unknown_is_refused() {
     render("east.nc", "--flow stream")
         .assert_refused(2, &["u is eastward_wind", "wanted x_wind and y_wind"]);
     render("rows.nc", "--flow stream").assert_done();
+    // Bricks keep no pole: they have no place on the Earth.
+    folder
+        .run("convert rows.nc --variable ta -o rows.svb")
+        .assert_done();
+    folder
+        .run("render rows.svb --map coast --size 16x12 --force -o a.png")
+        .assert_refused(2, &["no place on the Earth"]);
     // Degrees of the grid are none of the Earth.
     folder.file("seeds.csv", "lon,lat,height\n18,50.75,100\n");
     render("rows.nc", "--flow stream --flow-seeds seeds.csv").assert_refused(3, &["has none"]);

@@ -2,6 +2,7 @@
 //! `tests/fixtures/coast/make.py` made the bytes and says how they are packed.
 
 use super::coast::without_edges;
+use crate::format::geographic::on_edges;
 use std::sync::OnceLock;
 
 /// Lines of longitudes and latitudes in degrees.
@@ -52,8 +53,7 @@ impl Reader<'_> {
         (0..self.varint())
             .map(|_| {
                 at = at.map(|n| n + self.step());
-                let place = [0, 1].map(|k| at[k] as f64 * self.scale[k] + self.translate[k]);
-                [snapped(place[0], 180.0), snapped(place[1], 90.0)]
+                on_edges([0, 1].map(|k| at[k] as f64 * self.scale[k] + self.translate[k]))
             })
             .collect()
     }
@@ -74,14 +74,6 @@ impl Reader<'_> {
             }
         }
         n
-    }
-}
-
-/// The edge of the map, where the number is as good as on it.
-fn snapped(degrees: f64, edge: f64) -> f64 {
-    match (degrees.abs() - edge).abs() < 1e-9 {
-        true => edge.copysign(degrees),
-        false => degrees,
     }
 }
 

@@ -82,3 +82,12 @@ fn checked([longitude, latitude]: [f64; 2]) -> Result<[f64; 2], (f64, &'static s
     }
     Ok([longitude, latitude.clamp(-90.0, 90.0)])
 }
+
+/// A place in degrees, on the edge of the map where a sum of steps has left it a billionth of a degree beside.
+pub(crate) fn on_edges([longitude, latitude]: [f64; 2]) -> [f64; 2] {
+    let snapped = |degrees: f64, edge: f64| match (degrees.abs() - edge).abs() < 1e-9 {
+        true => edge.copysign(degrees),
+        false => degrees,
+    };
+    [snapped(longitude, 180.0), snapped(latitude, 90.0)]
+}

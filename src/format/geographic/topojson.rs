@@ -11,7 +11,7 @@
 //!
 //! Lines are the arcs that objects use, each once, however many share it: a border between two areas is one line.
 
-use super::{GeographicLine, checked};
+use super::{GeographicLine, checked, on_edges};
 use crate::format::problem::invalid;
 use crate::volume::Problem;
 use serde::de::{DeserializeSeed, IgnoredAny, SeqAccess, Visitor};
@@ -21,9 +21,6 @@ use std::fmt;
 
 /// The word of errors.
 const TOPOJSON: &str = "topojson";
-
-/// Degrees that a longitude or latitude may be off the edge of the map: what is nearer lies on it.
-const ROUNDING: f64 = 1e-9;
 
 /// True where an object of JSON says that it is a topology.
 pub(super) fn recognizes(text: &[u8]) -> bool {
@@ -137,17 +134,9 @@ fn line_of(
         let ([a, b], [c, d]) = (scale, translate);
         at = [x + step_x, y + step_y];
         let [x, y] = at;
-        checked([snapped(a * x + c, 180.0), snapped(b * y + d, 90.0)])
+        checked(on_edges([a * x + c, b * y + d]))
     };
     arc.into_iter().map(place).collect()
-}
-
-/// The edge, where the number is as good as on it.
-fn snapped(degrees: f64, edge: f64) -> f64 {
-    match (degrees.abs() - edge).abs() < ROUNDING {
-        true => edge.copysign(degrees),
-        false => degrees,
-    }
 }
 
 /// Two numbers; whatever there is more is passed over.

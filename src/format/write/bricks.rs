@@ -98,7 +98,8 @@ pub(super) fn write(
     header.hounsfield = layout.is_hounsfield;
     header.is_labels = layout.is_labels;
     header.is_earth = from.is_earth;
-    header.degree_lengths = from.degree_lengths;
+    // Bricks keep no pole, and degrees from another one are none of the Earth.
+    header.degree_lengths = from.earth_degree_lengths();
     header.long_name = from.long_name.clone();
     header.is_patient = from.is_patient;
     header.length_metres = from.length_metres;
