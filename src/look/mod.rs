@@ -5,7 +5,7 @@
 //! values   what a file says of its values, and what they look like     light   where there is light, and which
 //! side     the face of a slab, or the best of six sides                frame   a camera fitted to what is visible
 //! work     samples of a picture                                        components   thin matter of CT at faces
-//! height   the surface of what falls with height
+//! height   the surface of what falls with height                       surface   values where a surface passes
 //! ```
 //!
 //! `stratavox render --look auto` and the viewer choose by these functions. Nothing here asks a clock: the same inputs give
@@ -16,6 +16,7 @@ mod frame;
 mod height;
 mod light;
 mod side;
+mod surface;
 mod values;
 mod work;
 
@@ -26,6 +27,7 @@ pub use frame::{
 pub use height::{falls_with_height, mean_at_a_third};
 pub use light::{LIGHT, MATERIAL, Origin, STILL_SAMPLES, half_gradient, is_lit, light, may_choose};
 pub use side::{SIDES, best_side, face};
+pub use surface::summary_at;
 pub use values::{context, first_variable, summary};
 pub use work::{MOST_SAMPLES, samples};
 

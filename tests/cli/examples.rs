@@ -301,8 +301,9 @@ fn every_command_of_the_page_of_annotation_runs() {
 #[test]
 fn every_command_of_the_page_of_weather_runs() {
     let (folder, _, lines) = run_page("docs/weather.md");
-    assert_eq!(lines, 13);
+    assert_eq!(lines, 15);
     let pictures = [
+        "particles.png",
         "vapor.png",
         "comets.png",
         "wind.png",
@@ -314,7 +315,7 @@ fn every_command_of_the_page_of_weather_runs() {
     ];
     for name in pictures
         .into_iter()
-        .chain(["storm.gif", "updraft.vtp", "speed.nrrd"])
+        .chain(["storm.gif", "updraft.vtp", "speed.nrrd", "values.csv"])
     {
         assert!(folder.path(name).exists(), "{name}");
     }

@@ -186,7 +186,6 @@ fn what_is_no_wind_and_no_seed_is_refused_by_name() {
     run(STORM, "--flow-seeds random:4").assert_refused(2, &["--flow"]);
     run("phantom:storm,n=16,times=1", "--flow path")
         .assert_refused(2, &["one time", "--flow stream"]);
-    run(STORM, "--flow path").assert_refused(2, &["no dates"]);
     run(STORM, "--flow path --flow-seeds even").assert_refused(2, &["particles keep no distance"]);
     run(STORM, "--flow streak --flow-direction both").assert_refused(2, &["smoke goes forward"]);
     folder
@@ -195,6 +194,25 @@ fn what_is_no_wind_and_no_seed_is_refused_by_name() {
     let wrf = fixture("netcdf/wrf.nc");
     stream(&wrf, "--wind U,V,T").assert_refused(2, &["T has unit K", "m s-1", "Pa s-1"]);
     assert!(!folder.path("a.vtp").exists());
+}
+
+/// 8 times from 0 to 24 h. The wind at 9 km blows east with over 10 m/s.
+#[test]
+fn times_that_are_numbers_of_hours_carry_particles_as_dates_do() {
+    let folder = Folder::new();
+    folder.file("seeds.csv", "-20,0,9\n");
+    let ran = folder.run(&format!(
+        "convert {STORM} -o path.csv --flow path --flow-seeds seeds.csv --flow-time 0.1h"
+    ));
+    ran.assert_done();
+    let rows = rows(&folder, "path.csv");
+    let last = rows[rows.len() - 1];
+    assert!((last[1] - 360.0).abs() < 1e-6, "{last:?}");
+    let gone = last[2] + 20.0;
+    assert!(
+        (3.6..11.0).contains(&gone),
+        "10 to 30 m/s for six minutes, in km: {gone}"
+    );
 }
 
 /// Where 60 places of a real forecast are after an hour, against an integration in its own columns.

@@ -41,7 +41,7 @@ use super::{
     progress::{Progress, ProgressWord},
     renderer::Device,
     scene_file,
-    scene_inputs::{self, SceneInputs, wants_stream},
+    scene_inputs::{self, SceneInputs, wants_stream, with_range_of_film},
     show::ShowFlags,
     signals::Gate,
     timings::Timings,
@@ -244,6 +244,8 @@ impl Animate {
                 progress.stage("read", 0, 1);
                 let settings = &shots[0].settings;
                 let scene = Ground::with_range_of_film(scene)?;
+                let times = header.times;
+                let scene = with_range_of_film(&scene, settings, times, device, progress)?;
                 let mut first = scene.clone();
                 first.input.time = Some(shots[0].time.to_string());
                 let shown = SceneInputs::of_source(source, &first, settings, device, progress)?;

@@ -183,7 +183,7 @@ fn times(
     let seconds = seconds.ok_or_else(|| {
         Error::usage(
             format!(
-                "--flow {}: the times of the input have no dates that grow",
+                "--flow {}: the times of the input have no dates or hours that grow",
                 word.name()
             ),
             "--flow stream",

@@ -25,13 +25,19 @@ pub fn with_level(
     let Some(level) = mean_at_a_third(source, &mut seen)? else {
         return Ok(None);
     };
+    let level = rounded(level);
     let unit = header.unit.as_ref();
     let unit = unit.map_or(String::new(), |unit| format!(" {unit}"));
     progress.note(&format!(
-        "the surface of the value {}{unit}, the mean of all columns and times at a third of the height; --iso takes others",
+        "the surface of the value {}{unit}, the mean of all columns and times at a third of the height to three digits; --iso takes others",
         short(level)
     ));
     let mut scene = scene.clone();
     scene.modes.levels.iso = vec![level];
     Ok(Some(scene))
+}
+
+/// To three digits, as a person would write it.
+fn rounded(level: f64) -> f64 {
+    format!("{level:.2e}").parse().unwrap_or(level)
 }

@@ -15,6 +15,7 @@ mod with;
 
 pub use check::{check, shows_several};
 pub use level::with_level;
+pub use paint::with_range_of_film;
 pub use streamed::{is_wanted as wants_stream, open as open_stream};
 
 use super::{

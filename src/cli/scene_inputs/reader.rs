@@ -73,11 +73,9 @@ impl Reader<'_> {
         }
         let modes = &self.scene.modes;
         let none = ClassificationFlags::default();
-        let (flags, others) = match modes.paint(self.mode) {
-            // The words are of what colours the surfaces.
-            Some(word) => (&none, vec![self.paint(word, &volume.grid())?]),
-            None => (flags, Vec::new()),
-        };
+        let paint = modes.paint(self.mode);
+        // With another variable the words are of what colours the surfaces.
+        let flags = if paint.is_some() { &none } else { flags };
         let flags = &flags.with_window_of(self.mode, || Ok(summary(&volume)))?;
         let classification = flags.classification(&volume, self.mode)?;
         let (per_mode, note) = modes.per_mode(
@@ -89,6 +87,10 @@ impl Reader<'_> {
         if let Some(note) = note {
             self.progress.note(&note);
         }
+        let others = match paint {
+            Some(word) => vec![self.paint(word, &volume, &per_mode.levels)?],
+            None => Vec::new(),
+        };
         let found_labels = flags.found_labels(&classification);
         if found_labels && self.scene.sampling.filter.is_none() {
             self.progress

@@ -4,12 +4,13 @@
 //! day(y, m, d) = 365 y' + y'/4 - y'/100 + y'/400 + (153 m' + 2) / 5 + d - 1,   the year y' begins in March
 //! ```
 //!
-//! ISO 8601 in the Gregorian calendar.
+//! ISO 8601 in the Gregorian calendar, or a number with its unit.
 
-/// Seconds of each moment since the first one; `None` where one is no date.
+/// Seconds of each moment since the first one; `None` where one is neither a date nor a number with a unit of time.
 pub fn seconds_since_first(names: &[String]) -> Option<Vec<f64>> {
-    let seconds: Option<Vec<f64>> = names.iter().map(|name| seconds(name)).collect();
-    let seconds = seconds?;
+    let all = |of: fn(&str) -> Option<f64>| names.iter().map(|name| of(name)).collect();
+    let seconds: Option<Vec<f64>> = all(seconds);
+    let seconds = seconds.or_else(|| all(counted))?;
     let first = *seconds.first()?;
     Some(seconds.into_iter().map(|t| t - first).collect())
 }
@@ -34,6 +35,20 @@ fn seconds(name: &str) -> Option<f64> {
     let days = 365 * y + leaps + (153 * m + 2) / 5 + day - 1;
     let seconds = 86400.0 * days as f64 + 3600.0 * hour + 60.0 * minute + second;
     Some(seconds).filter(|seconds| seconds.is_finite())
+}
+
+/// Of `13.5 h`: a length of time since whatever the file counts from.
+fn counted(name: &str) -> Option<f64> {
+    let (number, unit) = name.trim().split_once(' ')?;
+    let of_unit = match unit.trim() {
+        "s" | "sec" | "second" | "seconds" => 1.0,
+        "min" | "minute" | "minutes" => 60.0,
+        "h" | "hr" | "hour" | "hours" => 3600.0,
+        "d" | "day" | "days" => 86400.0,
+        _ => return None,
+    };
+    let number: f64 = number.parse().ok()?;
+    Some(number * of_unit).filter(|seconds| seconds.is_finite())
 }
 
 #[cfg(test)]
@@ -61,7 +76,11 @@ mod tests {
         ]);
         assert_eq!(leap, Some(vec![0.0, 2.0 * day, 367.0 * day, -59.0 * day]));
         assert_eq!(of(&["1900-02-28", "1900-03-01"]), Some(vec![0.0, day]));
-        assert_eq!(of(&["3 days"]), None);
+        assert_eq!(of(&["3 days", "4.5 days"]), Some(vec![0.0, 1.5 * day]));
+        assert_eq!(of(&["0 h", "13.71 h"]), Some(vec![0.0, 13.71 * 3600.0]));
+        assert_eq!(of(&["3 days", "2000-02-28"]), None);
+        assert_eq!(of(&["3", "4"]), None);
+        assert_eq!(of(&["3 days", "inf days"]), None);
         assert_eq!(of(&[]), None);
     }
 }
