@@ -19,7 +19,11 @@ draw brain mri-brainsmall/brainsmall.nhdr --tf "$here/brain.json" --shading phon
 draw walnut ct-walnut/walnut.mhd --shading phong --material 0.3,0.6,0.1,10 --light 1,-0.5,0.7 --shadows volume \
     --azimuth 200 --elevation 40 --zoom 1.2
 draw nuclei tiff-nuclei/img3d.tif --mode mida --samples-per-voxel 2 --zoom 1.1
-"$program" render "$volumes/met-wrf/wrf_ci.nc" --show both --size 900x600 --force --progress none -o "$here/weather.png"
+wrf="$volumes/met-wrf/wrf_ci.nc"
+"$program" render "$wrf" --show both --size 900x600 --force --progress none -o "$here/weather.png"
+"$program" render "$wrf" --show vapor --size 600x450 --force --progress none -o "$here/weather-vapor.png"
+"$program" render "$wrf" --show wind --size 600x450 --force --progress none -o "$here/weather-wind.png"
+"$program" animate "$wrf" --show vapor --between 7 --fps 8 --size 400x300 --force --progress none -o "$here/weather-day.gif"
 draw pet dicom-pet --mode mip --denoise nlm --view anterior --zoom 1.3
 # Two people: the heart of the second is moved into the chest of the first.
 draw ct-pet ct-torso/torso-2x.mha --with "$volumes/dicom-pet,preset=pet,shift=10:-344:80" --view anterior
