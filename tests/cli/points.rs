@@ -192,9 +192,13 @@ fn points_over_the_date_line_are_one_box_and_files_say_what_they_do_not_keep() {
     }
     let info = folder.run("info q.nrrd --json");
     let info: serde_json::Value = serde_json::from_str(&info.out).expect("JSON");
-    let extent = info["extent"][0].as_f64().expect("a length");
-    // 19 degrees at 18 south, and a voxel's edge.
-    assert!((1900.0..2300.0).contains(&extent), "{extent}");
+    let spacing = info["spacing"][0].as_f64().expect("a length");
+    // 19 degrees at 18 south: 111.195 km cos 18 each, and a voxel's edge.
+    let extent = 19.0 * 111.195 * 18_f64.to_radians().cos();
+    assert!(
+        (extent / 20.0..=extent / 18.0).contains(&spacing),
+        "{spacing}"
+    );
     folder
         .run("convert q.csv -o r.nrrd --interpolate natural")
         .assert_refused(2, &["--interpolate natural: not built yet", "shepard, idw"]);

@@ -10,6 +10,7 @@
 
 use super::LineValues;
 use crate::flow::line::Line;
+use std::fmt;
 use std::io::{self, Write};
 
 /// What places of the world are on the Earth.
@@ -19,6 +20,15 @@ pub struct Geography<'a> {
     pub degrees: Option<&'a dyn Fn([f64; 2]) -> [f64; 2]>,
     /// What z is, where it is known.
     pub upright: Option<Upright>,
+}
+
+impl fmt::Debug for Geography<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let known = self.degrees.map(|_| "known");
+        let mut debug = f.debug_struct("Geography");
+        debug.field("degrees", &known);
+        debug.field("upright", &self.upright).finish()
+    }
 }
 
 /// What z of the world is.
