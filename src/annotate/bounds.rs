@@ -5,7 +5,10 @@
 //! the leftmost: what is chosen depends on the camera alone.
 
 use super::{facts::Facts, projector::Projector, sheet::Sheet, units};
-use crate::{figure::Anchor, volume::Grid};
+use crate::{
+    figure::Anchor,
+    volume::{Grid, Heights},
+};
 use glam::DVec3;
 
 /// An edge of the box.
@@ -100,7 +103,8 @@ pub fn ticks(
         let along = edge.ends[1] - edge.ends[0];
         // Coordinates where the edge goes along an axis of the world, else lengths from its first end.
         let world = (0..3).find(|&k| along.normalize()[k].abs() > 1.0 - 1e-6);
-        let measure = Measure::of(world, facts, height_factor);
+        let level = grid.world_from_voxel.matrix3.z_axis.z.abs();
+        let measure = Measure::of(world, facts, height_factor, level);
         let range = match world {
             Some(k) => [0, 1].map(|end| edge.ends[end][k] / measure.length),
             None => [0.0, along.length()],
@@ -174,8 +178,9 @@ struct Measure {
 }
 
 impl Measure {
-    /// Along an axis of the world, or none. On the Earth degrees where points are given by them.
-    fn of(world: Option<usize>, facts: &Facts, height_factor: f64) -> Self {
+    /// Along an axis of the world, or none. On the Earth degrees where points are given by them, and levels, so far apart as
+    /// they are drawn, where their heights are not known.
+    fn of(world: Option<usize>, facts: &Facts, height_factor: f64, level: f64) -> Self {
         let lengths = |name, length| Self {
             name,
             unit: length_unit(facts),
@@ -189,6 +194,13 @@ impl Measure {
                 name: ["longitude", "latitude"][k],
                 unit: Some("°"),
                 length: *length,
+            };
+        }
+        if k == 2 && facts.heights == Heights::Levels {
+            return Self {
+                name: "level",
+                unit: None,
+                length: level,
             };
         }
         let names = match facts.is_earth {
@@ -227,13 +239,16 @@ mod tests {
             ..Facts::default()
         };
         let of = |facts: &Facts, world| {
-            let Measure { name, unit, length } = Measure::of(world, facts, 20.0);
+            let Measure { name, unit, length } = Measure::of(world, facts, 20.0, 7.0);
             (name, unit.unwrap_or_default(), length)
         };
         assert_eq!(of(&facts, Some(0)), ("longitude", "°", 70.0));
         assert_eq!(of(&facts, Some(1)), ("latitude", "°", 111.2));
         assert_eq!(of(&facts, Some(2)), ("height", "km", 20.0));
         assert_eq!(of(&facts, None), ("", "km", 1.0));
+        facts.heights = Heights::Levels;
+        assert_eq!(of(&facts, Some(2)), ("level", "", 7.0));
+        facts.heights = Heights::Lengths;
         // The map of a weather model.
         facts.degree_lengths = [None; 2];
         assert_eq!(of(&facts, Some(0)), ("east", "km", 1.0));

@@ -2,7 +2,7 @@
 
 use crate::{
     figure::letter_lacking,
-    volume::{ComponentKind, Format, Header},
+    volume::{ComponentKind, Format, Header, Heights},
 };
 
 /// Of the volume that is drawn, or of what colours it.
@@ -24,6 +24,8 @@ pub struct Facts {
     pub degree_lengths: [Option<f64>; 2],
     /// Metres of a unit of the world.
     pub length_metres: Option<f64>,
+    /// What places along z stand for, on the Earth.
+    pub heights: Heights,
     /// Names of channels; empty where there are none.
     pub channels: Vec<String>,
     /// A voxel is a colour.
@@ -52,6 +54,7 @@ impl Facts {
             is_earth: header.is_earth,
             degree_lengths: header.earth_degree_lengths(),
             length_metres: header.length_metres,
+            heights: header.heights,
             channels,
             is_color: matches!(header.meaning, ComponentKind::Rgb | ComponentKind::Rgba),
             source: source(name, header),

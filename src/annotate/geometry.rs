@@ -1,7 +1,7 @@
 //! What geometry beside a volume means: bars for its colours, sentences for its symbols.
 
 use super::{Error, Seen, bar::Bar, degrees::DegreeLine, sheet::Sheet};
-use crate::{figure::Anchor, technique::Mode, transfer::TransferFunction};
+use crate::{figure::Anchor, transfer::TransferFunction};
 
 /// What colours of geometry mean.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,6 +27,8 @@ pub struct GeometryLegend<'a> {
     pub degrees: &'a [DegreeLine],
 }
 
+/// From line to line of words in the lower right, in em.
+pub(super) const APART: f64 = 1.4;
 /// How much of the picture's width a sentence takes.
 const WIDEST: f64 = 0.55;
 
@@ -64,22 +66,14 @@ pub(super) fn bars(sheet: &mut Sheet, seen: &Seen) -> Result<Option<f64>, Error>
     Ok(left)
 }
 
-/// The sentences, in the lower right above what stands there.
-pub(super) fn words(sheet: &mut Sheet, seen: &Seen, has_source: bool) {
+/// The sentences, in the lower right, so many em above the lower side.
+pub(super) fn words(sheet: &mut Sheet, seen: &Seen, below: f64) {
     let ([width, height], em) = (sheet.size(), sheet.em);
-    let levels = match seen.settings.mode {
-        Mode::Iso => seen.settings.per_mode.levels.len(),
-        _ => 0,
-    };
-    let below = match levels > 0 || has_source {
-        true => 2.6 + 1.4 * levels as f64,
-        false => 1.0,
-    };
     let words = seen.geometry.words.iter().map(|words| unparted(words));
     let lines = words.flat_map(|words| sheet.wrapped(&words, 1.0, WIDEST * width, 4));
     let lines: Vec<String> = lines.collect();
     for (at, line) in lines.iter().rev().enumerate() {
-        let y = height - (below + 1.4 * at as f64) * em;
+        let y = height - (below + APART * at as f64) * em;
         sheet.text_on_ground([width - em, y], line, 1.0, Anchor::End);
     }
 }

@@ -34,6 +34,7 @@ use crate::{
     volume::Grid,
 };
 use bar::{Bar, legend};
+use geometry::APART;
 use projector::Projector;
 use sheet::Sheet;
 
@@ -185,7 +186,8 @@ impl Annotation {
         if self.marks.bar {
             let lefts = [self.colors(sheet, seen)?, geometry::bars(sheet, seen)?];
             right = lefts.into_iter().flatten().fold(right, f64::min);
-            geometry::words(sheet, seen, self.marks.source);
+            let below = self.base() + APART * self.level_lines(sheet, seen).len() as f64;
+            geometry::words(sheet, seen, below);
         }
         let mut baseline = 1.6 * em;
         if let Some(title) = &self.marks.title {
@@ -304,14 +306,33 @@ impl Annotation {
         Ok(legend(sheet, &entries))
     }
 
-    /// A line for each surface of another variable, in the lower right.
+    /// How far above the lower side words begin in the lower right, in em.
+    fn base(&self) -> f64 {
+        if self.marks.source { 2.6 } else { 0.7 }
+    }
+
+    /// What stands in the lower right where surfaces have the colours of another variable: which variable and level each
+    /// shows, from above.
+    fn level_lines(&self, sheet: &Sheet, seen: &Seen) -> Vec<String> {
+        if seen.settings.mode != Mode::Iso || self.facts.paint.is_none() {
+            return Vec::new();
+        }
+        let levels = seen.settings.per_mode.levels.iter();
+        let lines = levels.flat_map(|level| {
+            // A number and its unit are not parted.
+            let level = self.level(level.value).replace(' ', "\u{a0}");
+            let words = format!("{} {level}", self.facts.caption);
+            sheet.wrapped(&words, 1.0, 0.5 * sheet.size()[0], 2)
+        });
+        lines.collect()
+    }
+
     fn levels_below(&self, sheet: &mut Sheet, seen: &Seen) {
         let ([width, height], em) = (sheet.size(), sheet.em);
-        for (at, level) in seen.settings.per_mode.levels.iter().enumerate() {
-            let text = format!("{} {}", self.facts.caption, self.level(level.value));
-            let text = sheet.shortened(text.trim(), 1.0, 0.5 * width);
-            let y = height - (2.6 + 1.4 * at as f64) * em;
-            sheet.text_on_ground([width - em, y], &text, 1.0, Anchor::End);
+        let lines = self.level_lines(sheet, seen);
+        for (at, text) in lines.iter().rev().enumerate() {
+            let y = height - (self.base() + APART * at as f64) * em;
+            sheet.text_on_ground([width - em, y], text, 1.0, Anchor::End);
         }
     }
 

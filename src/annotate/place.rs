@@ -2,6 +2,7 @@
 
 use super::{facts::Facts, projector::Projector, sheet::Sheet, units};
 use crate::figure::{Anchor, Point};
+use crate::volume::Heights;
 use glam::DVec3;
 
 /// A scale bar is no longer than this share of the picture's width. It is longer than half of that, where one of 1, 2 and
@@ -29,7 +30,9 @@ pub fn scale(sheet: &mut Sheet, projector: &Projector, facts: &Facts, height_fac
     let mut top = y - 1.8 * em;
     // How long a unit of height is in the picture.
     let upright = projector.frame.up.z;
-    if height_factor > 1.0 && upright > 0.1 {
+    // Levels whose heights are not known have no lengths.
+    let has_heights = facts.heights != Heights::Levels;
+    if height_factor > 1.0 && upright > 0.1 && has_heights {
         let unit = height_factor * upright / pixel;
         let (length, text) = units::round_length(0.15 * height / unit, metres);
         let foot_y = top - 0.5 * em;

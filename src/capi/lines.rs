@@ -433,10 +433,12 @@ unsafe fn traced(c: &sv_trace_desc) -> Result<Vec<Line>, Failure> {
                 0 => known.most,
                 most => most as usize,
             },
+            most_vertices: usize::MAX,
             ..known
         };
+        let mut told = |_: &Line, _| {};
         return Ok(even_stream_lines(
-            &field, start, &grid, spacing, direction, &limits,
+            &field, start, &grid, spacing, direction, &limits, &mut told,
         ));
     }
     let seeds = seeds

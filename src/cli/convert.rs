@@ -109,6 +109,17 @@ impl Convert {
     /// Reads and writes.
     pub fn run(mut self, gate: &Gate) -> Result<(), Error> {
         self.put_points_on_grid()?;
+        let wind = self.flow.wind.is_some().then_some("--wind");
+        if let Some(word) = self
+            .flow
+            .word_without_lines()
+            .or(wind.filter(|_| self.flow.flow.is_none()))
+        {
+            return Err(Error::usage(
+                format!("{word} is of lines along the wind, and a volume is written"),
+                "--flow stream writes lines",
+            ));
+        }
         if let Some(word) = self.flow.flow {
             self.flow.check(&self.output)?;
             let inputs: Vec<PathBuf> = self.input.file().map(Path::to_owned).into_iter().collect();

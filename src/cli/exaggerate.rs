@@ -20,8 +20,8 @@ pub fn suggested(grid: &Grid) -> f64 {
     if !(factor > 1.0 && factor.is_finite()) || grid.dims.contains(&1) {
         return 1.0;
     }
-    let unit = 10_f64.powf(factor.log10().floor() - 1.0);
-    (factor / unit).round() * unit
+    // The nearest number that is written with two digits.
+    format!("{factor:.1e}").parse().unwrap_or(factor)
 }
 
 /// Lengths of the world box around the grid along x, y, z.
@@ -88,6 +88,9 @@ mod tests {
         assert_eq!(suggested(&grid([1.0, 1.0, 0.05], [100, 100, 100])), 5.0);
         // 40000 km by 30 km: 333.3 to two digits.
         assert_eq!(suggested(&grid([100.0, 100.0, 1.0], [400, 200, 30])), 330.0);
+        // 23 times a tenth is no f64 that is written so.
+        let few = suggested(&grid([1.0, 1.0, 1.0], [92, 40, 10]));
+        assert_eq!(few.to_string(), "2.3");
     }
 
     #[test]

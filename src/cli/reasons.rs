@@ -5,35 +5,90 @@ use crate::{
     camera::Camera,
     figure::short,
     picture::Picture,
-    technique::{Mode, Settings},
+    technique::{Filter, Mode, Settings},
     transfer::{Absorption, Points, TransferFunction, classify_by_points},
     volume::Volume,
 };
 use glam::{DMat3, DVec3};
+use std::fmt;
 
-/// The reason, where no pixel of `picture` shows anything.
+/// Nothing of the volume is seen in a picture.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Unseen {
+    /// Nor anything else.
+    pub is_empty: bool,
+    pub why: String,
+}
+
+impl fmt::Display for Unseen {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let what = match self.is_empty {
+            true => "the picture is empty",
+            false => "nothing of the volume is seen",
+        };
+        write!(f, "{what}: {}", self.why)
+    }
+}
+
+/// Why nothing of the volume is seen in `picture`, where that is so. `has_others` says that the picture shows more than the
+/// volume, lines or a map: then pixels do not tell, and it is so where values and places of the volume leave no doubt.
 pub fn why_empty(
+    picture: &Picture,
+    has_others: bool,
+    volume: &Volume,
+    classification: &Classification,
+    camera: &Camera,
+    settings: &Settings,
+) -> Option<Unseen> {
+    let is_empty = picture.pixels.iter().all(|pixel| pixel[3] == 0.0);
+    let is_certain = || match (classification, seen_of(picture, volume, camera, settings)) {
+        (_, Seen::Nothing | Seen::Clipped) => true,
+        _ if settings.splat.of_points || settings.field.is_some() => false,
+        _ if settings.mode == Mode::Iso => meets_no_level(settings, volume),
+        (Classification::Function(function), _) => covers_nothing(settings, function, volume),
+        (Classification::RangeOfPicture, _) => false,
+    };
+    let is_unseen = is_empty || has_others && (holds_no_data(volume) || is_certain());
+    is_unseen.then(|| Unseen {
+        is_empty,
+        why: reason(picture, volume, classification, camera, settings),
+    })
+}
+
+fn holds_no_data(volume: &Volume) -> bool {
+    let validity = volume.validity.as_deref().unwrap_or(&[1]);
+    !validity.is_empty() && validity.iter().all(|&valid| valid == 0)
+}
+
+/// True where no level lies between the extremes of the values, nor between those that filters make of them.
+fn meets_no_level(settings: &Settings, volume: &Volume) -> bool {
+    let [low, high] = volume.value_range;
+    let is_between = matches!(
+        settings.filter,
+        Filter::Nearest | Filter::Linear | Filter::QuadraticSmooth | Filter::CubicSmooth
+    );
+    let mut levels = settings.per_mode.levels.iter();
+    is_between && levels.all(|level| !(low..=high).contains(&level.value))
+}
+
+fn reason(
     picture: &Picture,
     volume: &Volume,
     classification: &Classification,
     camera: &Camera,
     settings: &Settings,
-) -> Option<String> {
-    if picture.pixels.iter().any(|pixel| pixel[3] != 0.0) {
-        return None;
+) -> String {
+    if holds_no_data(volume) {
+        return "all voxels of the volume hold no data".to_owned();
     }
-    let validity = volume.validity.as_deref().unwrap_or(&[1]);
-    if !validity.is_empty() && validity.iter().all(|&valid| valid == 0) {
-        return Some("all voxels of the volume hold no data".to_owned());
-    }
-    let seen = seen(volume, camera, settings, [picture.width, picture.height]);
+    let seen = seen_of(picture, volume, camera, settings);
     let [low, high] = volume.value_range.map(short);
     let unit = volume.unit.as_ref().map(|unit| format!(" {unit}"));
     let values = format!(
         "values run from {low} to {high}{}",
         unit.unwrap_or_default()
     );
-    Some(match (seen, classification) {
+    match (seen, classification) {
         (Seen::Nothing, _) => "the camera sees no volume".to_owned(),
         (Seen::Clipped, _) => {
             "everything that the camera sees is cut away by --crop or --clip".to_owned()
@@ -56,7 +111,7 @@ pub fn why_empty(
         (Seen::Volume, _) => {
             "no sample of a ray meets a value that the transfer function covers".to_owned()
         }
-    })
+    }
 }
 
 /// How far the rays of a picture get.
@@ -68,6 +123,10 @@ enum Seen {
     Clipped,
     /// Some go through the domain.
     Volume,
+}
+
+fn seen_of(picture: &Picture, volume: &Volume, camera: &Camera, settings: &Settings) -> Seen {
+    seen(volume, camera, settings, [picture.width, picture.height])
 }
 
 fn seen(volume: &Volume, camera: &Camera, settings: &Settings, extent: [u32; 2]) -> Seen {
@@ -167,7 +226,7 @@ mod tests {
     use super::*;
     use crate::{
         camera::Projection,
-        technique::ClipPlane,
+        technique::{ClipPlane, Level},
         transfer::{Classified, Window},
         volume::{Rescale, Voxels},
     };
@@ -179,6 +238,7 @@ mod tests {
         settings: Settings,
         window: [f64; 2],
         alpha: f32,
+        has_others: bool,
     }
 
     /// A cube of values 0 to 7 around (1, 1, 1), seen from the front, all of it grey.
@@ -205,6 +265,15 @@ mod tests {
             settings: Settings::default(),
             window: [0.0, 7.0],
             alpha: 0.0,
+            has_others: false,
+        }
+    }
+
+    fn surface(value: f64) -> Level {
+        Level {
+            value,
+            srgb: [1.0; 3],
+            opacity: 1.0,
         }
     }
 
@@ -221,11 +290,13 @@ mod tests {
         let function = Classification::Function(window.grey(Classified::Samples));
         why_empty(
             &picture,
+            case.has_others,
             &case.volume,
             &function,
             &case.camera,
             &case.settings,
         )
+        .map(|unseen| unseen.to_string())
         .unwrap_or_default()
     }
 
@@ -238,6 +309,41 @@ mod tests {
             }),
             ""
         );
+    }
+
+    #[test]
+    fn beside_lines_the_volume_counts_where_it_leaves_no_doubt() {
+        let beside = || Case {
+            alpha: 1.0,
+            has_others: true,
+            ..case()
+        };
+        assert_eq!(reason(&beside()), "");
+        let mut level = beside();
+        level.settings.mode = Mode::Iso;
+        level.settings.per_mode.levels = vec![surface(9.0)];
+        let said = reason(&level);
+        assert_eq!(
+            said,
+            "nothing of the volume is seen: no ray meets the level 9; values run from 0 to 7"
+        );
+        // What a filter may make of the values, and a level of them.
+        level.settings.filter = Filter::Cubic;
+        assert_eq!(reason(&level), "");
+        level.settings.filter = Filter::Linear;
+        level.settings.per_mode.levels.push(surface(3.0));
+        assert_eq!(reason(&level), "");
+        let beyond = Case {
+            window: [100.0, 200.0],
+            ..beside()
+        };
+        assert!(reason(&beyond).contains("covers no value of this"));
+        let mut away = beside();
+        away.camera.target = DVec3::new(1.0, 20.0, 1.0);
+        assert!(reason(&away).contains("nothing of the volume is seen: the camera sees no volume"));
+        let mut empty = beside();
+        empty.volume.validity = Some(vec![0; 8]);
+        assert!(reason(&empty).contains("no data"));
     }
 
     #[test]

@@ -281,10 +281,12 @@ impl Render {
         }
         let start = Instant::now();
         let reasoned = parts.only(classification);
+        let has_others = shown.lines().is_some() && !scene.hides_volume();
         if !panels.are_several()
-            && let Some(reason) = why_empty(&picture, volume, reasoned, camera, settings)
+            && let Some(reason) =
+                why_empty(&picture, has_others, volume, reasoned, camera, settings)
         {
-            progress.note(&format!("the picture is empty: {reason}"));
+            progress.note(&reason.to_string());
         }
         let annotation = annotation(&scene, &shown.header, settings.mode)?;
         if let Some(note) = annotation.as_ref().and_then(Annotation::note) {

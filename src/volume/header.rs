@@ -63,8 +63,8 @@ pub struct Header {
     pub map: Option<MapProjection>,
     /// CF standard names of [`Self::variables`], in their order, empty where one has none. Empty in formats without.
     pub variable_standard_names: Vec<String>,
-    /// True where heights are those of pressures in the standard atmosphere.
-    pub heights_are_pressures: bool,
+    /// What the places along z of a piece of the Earth stand for.
+    pub heights: Heights,
     /// What a person should know about how the file was understood, one sentence each.
     pub notes: Vec<String>,
 }
@@ -112,9 +112,21 @@ impl Header {
             derived: Vec::new(),
             map: None,
             variable_standard_names: Vec::new(),
-            heights_are_pressures: false,
+            heights: Heights::Lengths,
             notes: Vec::new(),
         }
+    }
+
+    /// World length from level to level, where places along z are nothing but numbers of levels.
+    pub fn level_length(&self) -> Option<f64> {
+        let step = self.world_from_voxel.matrix3.z_axis.z.abs();
+        (self.heights == Heights::Levels).then_some(step)
+    }
+
+    /// Metres of a world length along z; `None` where the file is silent, and of levels, whose heights are not known.
+    pub fn height_metres(&self) -> Option<f64> {
+        self.length_metres
+            .filter(|_| self.heights != Heights::Levels)
     }
 
     /// Voxels of one time and component.
@@ -129,6 +141,19 @@ impl Header {
             max: self.dims,
         }
     }
+}
+
+/// What the places along z of a piece of the Earth stand for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "json", derive(serde::Serialize, serde::Deserialize))]
+pub enum Heights {
+    /// Lengths over sea level.
+    #[default]
+    Lengths,
+    /// Pressures, at their heights in the standard atmosphere.
+    Pressures,
+    /// Numbers of levels whose heights are not known: they are spread evenly, the centre of the lowest lies at 0.
+    Levels,
 }
 
 /// What the components of a voxel are to each other.

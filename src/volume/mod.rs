@@ -54,7 +54,8 @@ pub use crossings::RayInterval;
 pub use denoise::{Denoise, MAX_SIGMA_VOXELS, Pass, noise_of, with_numbers};
 pub use grid::Grid;
 pub use header::{
-    Channel, ComponentKind, DerivedVariable, Format, Header, Rescale, Series, VolumeSelection,
+    Channel, ComponentKind, DerivedVariable, Format, Header, Heights, Rescale, Series,
+    VolumeSelection,
 };
 pub use histogram::Histogram;
 pub use joint::{JointHistogram, steepest_gradient};

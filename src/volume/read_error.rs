@@ -96,6 +96,9 @@ pub enum Problem {
         /// The feature.
         what: String,
     },
+    /// Cells that are no lattice; says who makes one of them.
+    #[error("unstructured grids are not read; resample with vtkResampleToImage to .vti")]
+    Unstructured,
     /// More than the limits allow.
     #[error("{what} needs {wanted_bytes} bytes, the limit is {limit_bytes}")]
     Limit {

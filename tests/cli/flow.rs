@@ -303,3 +303,76 @@ fn what_goes_up_beside_a_pair_that_is_said_is_said_too() {
         assert!(ran.err.contains(wanted), "{pair}: {ran:#?}");
     }
 }
+
+/// Mercator's map of a real forecast against its own latitudes and longitudes: there, as columns of lines, and back, as seeds.
+#[test]
+fn lines_of_a_forecast_on_a_map_have_degrees_and_seeds_take_them() {
+    let Some(file) = data().map(|data| data.join("met-wrf/wrf_ci.nc")) else {
+        println!("skipped: there is no data");
+        return;
+    };
+    if !file.exists() {
+        println!("skipped: there is no {}", file.display());
+        return;
+    }
+    let folder = Folder::new();
+    let file = file.display();
+    // Of the first time, 48 by 48, x fastest.
+    let numbers = |name: &str| -> Vec<f64> {
+        folder
+            .run(&format!(
+                "convert {file} -o {name}.npy --variable {name} --time 0 --type f64"
+            ))
+            .assert_done();
+        let bytes = fs::read(folder.path(&format!("{name}.npy"))).expect("numbers");
+        let numbers = &bytes[bytes.len() - 8 * 48 * 48..];
+        let number = |b: &[u8]| f64::from_le_bytes(b.try_into().expect("eight bytes"));
+        numbers.chunks(8).map(number).collect()
+    };
+    let [latitudes, longitudes] = ["XLAT", "XLONG"].map(numbers);
+    let lines = |seeds: &str, name: &str| {
+        let words = "--flow stream --flow-direction forward --flow-time 1h --force";
+        folder
+            .run(&format!(
+                "convert {file} -o {name} {words} --flow-seeds {seeds}"
+            ))
+            .assert_done();
+        rows(&folder, name)
+    };
+    let there = lines("random:40", "there.csv");
+    for row in &there {
+        // Middles of cells are 10 km apart, the first at -235 km.
+        let [x, y] = [row[2], row[3]].map(|n| (n + 235.0) / 10.0);
+        let [i, j] = [x, y].map(|n| n.floor().clamp(0.0, 46.0));
+        let at = |list: &[f64]| {
+            let node = |di: f64, dj: f64| list[((j + dj) * 48.0 + i + di) as usize];
+            let along = |dj: f64| node(0.0, dj) + (x - i) * (node(1.0, dj) - node(0.0, dj));
+            along(0.0) + (y - j) * (along(1.0) - along(0.0))
+        };
+        // The map meets XLAT and XLONG to 2 m; between nodes a latitude bends by (10 km)^2 tan(p) / (8 R): 1 m. A degree is 111 km.
+        assert!((row[5] - at(&longitudes)).abs() < 5e-5, "{row:?}");
+        assert!((row[6] - at(&latitudes)).abs() < 5e-5, "{row:?}");
+    }
+    let mut seeds = "lon,lat,height\n".to_owned();
+    let mut first = there.clone();
+    first.dedup_by_key(|row| row[0]);
+    for row in &first {
+        seeds += &format!("{},{},{}\n", row[5], row[6], row[7]);
+    }
+    folder.file("seeds.csv", seeds);
+    let back = lines("seeds.csv", "back.csv");
+    let mut begins = back.clone();
+    begins.dedup_by_key(|row| row[0]);
+    assert!(first.len() >= 30 && begins.len() == first.len());
+    for (a, b) in first.iter().zip(&begins) {
+        for k in 2..5 {
+            assert!((a[k] - b[k]).abs() < 1e-6, "{a:?} {b:?}");
+        }
+    }
+    folder.file("far.csv", "lon,lat,height\n100,20,500\n");
+    let far = folder.run(&format!(
+        "convert {file} -o a.csv --flow stream --flow-seeds far.csv"
+    ));
+    let said = "none of 1 seeds lies in the wind";
+    assert!(far.code == 2 && far.err.contains(said), "{far:#?}");
+}

@@ -47,6 +47,7 @@ mod interrupt;
 mod kept_samples;
 mod large;
 mod left_out;
+mod levels_of_wind;
 mod look;
 mod look_frame;
 mod manuals;

@@ -187,7 +187,40 @@ fn what_a_moved_pole_leaves_unknown_is_refused() {
     folder
         .run("render rows.svb --map coast --size 16x12 --force -o a.png")
         .assert_refused(2, &["no place on the Earth"]);
-    // Degrees of the grid are none of the Earth.
+}
+
+/// The middle of the grid, as far from the moved pole as from its latitude 0.
+#[test]
+fn seeds_and_lines_have_degrees_of_the_earth() {
+    let folder = Folder::new();
+    folder.file("rows.nc", file(0.0, "pole", ALONG_ROWS));
+    folder.file("other.nc", file(0.5, "pole", ALONG_ROWS));
     folder.file("seeds.csv", "lon,lat,height\n18,50.75,100\n");
-    render("rows.nc", "--flow stream --flow-seeds seeds.csv").assert_refused(3, &["has none"]);
+    let convert = |name: &str, seeds: &str| {
+        folder.run(&format!(
+            "convert {name} -o a.csv --force --flow stream --flow-direction forward --flow-seeds {seeds}"
+        ))
+    };
+    convert("rows.nc", "seeds.csv").assert_done();
+    let first = || -> Vec<f64> {
+        let text = fs::read_to_string(folder.path("a.csv")).expect("lines");
+        let row = text.lines().nth(1).expect("a vertex");
+        row.split(',')
+            .map(|n| n.parse().unwrap_or(f64::NAN))
+            .collect()
+    };
+    for (found, wanted) in first()[2..8]
+        .iter()
+        .zip([0.0, 0.0, 0.1, 18.0, 50.75, 100.0])
+    {
+        assert!((found - wanted).abs() < 1e-6, "{:?}", first());
+    }
+    // Where the file disagrees with itself there are no degrees.
+    convert("other.nc", "random:3").assert_done();
+    assert!(first()[5].is_nan() && first()[6].is_nan());
+    let refused = convert("other.nc", "seeds.csv");
+    assert!(
+        refused.code == 3 && refused.err.contains("its map differ"),
+        "{refused:#?}"
+    );
 }

@@ -160,3 +160,46 @@ fn thumbnails_and_sheets_splat_points_too() {
     ran.assert_done();
     assert!(!ran.err.contains("hold no data"), "{}", ran.err);
 }
+
+#[test]
+fn points_over_the_date_line_are_one_box_and_files_say_what_they_do_not_keep() {
+    let folder = Folder::new();
+    let row = |i: u32| {
+        let longitude = 170.0 + f64::from(i);
+        let wrapped = if longitude > 180.0 {
+            longitude - 360.0
+        } else {
+            longitude
+        };
+        format!(
+            "{wrapped},{},{},{i}",
+            -20.0 + f64::from(i % 5),
+            10.0 * f64::from(i % 3)
+        )
+    };
+    let rows: Vec<_> = ["lon,lat,depth_km,magnitude".to_owned()]
+        .into_iter()
+        .chain((0..20).map(row))
+        .collect();
+    folder.file("q.csv", rows.join("\n"));
+    let ran = folder.run("convert q.csv -o q.nrrd --grid 20x8x4 --interpolate idw");
+    ran.assert_done();
+    for words in [
+        "longitudes go over the date line: they count from 170.00 to 189.00",
+        "the file does not keep that the world is a piece of the Earth",
+    ] {
+        assert!(ran.err.contains(words), "{ran:#?}");
+    }
+    let info = folder.run("info q.nrrd --json");
+    let info: serde_json::Value = serde_json::from_str(&info.out).expect("JSON");
+    let spacing = info["spacing"][0].as_f64().expect("a length");
+    // 19 degrees at 18 south: 111.195 km cos 18 each, and a voxel's edge.
+    let extent = 19.0 * 111.195 * 18_f64.to_radians().cos();
+    assert!(
+        (extent / 20.0..=extent / 18.0).contains(&spacing),
+        "{spacing}"
+    );
+    folder
+        .run("convert q.csv -o r.nrrd --interpolate natural")
+        .assert_refused(2, &["--interpolate natural: not built yet", "shepard, idw"]);
+}

@@ -104,7 +104,11 @@ fn what_is_wrong_is_named() {
     for (from, to, word) in [
         ("\"ImageData\"", "\"PImageData\"", "PImageData"),
         ("\"ImageData\"", "\"RectilinearGrid\"", "RectilinearGrid"),
-        ("\"ImageData\"", "\"UnstructuredGrid\"", "UnstructuredGrid"),
+        (
+            "\"ImageData\"",
+            "\"UnstructuredGrid\"",
+            "unstructured grids are not read; resample with vtkResampleToImage to .vti",
+        ),
         ("UInt32\">", "UInt16\">", "header_type"),
         ("LittleEndian", "MiddleEndian", "byte_order"),
         (

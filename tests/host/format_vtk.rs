@@ -136,7 +136,7 @@ fn other_data_sets_types_and_versions_are_refused_by_name() {
         (
             "STRUCTURED_POINTS",
             "UNSTRUCTURED_GRID",
-            "UNSTRUCTURED_GRID",
+            "unstructured grids are not read; resample with vtkResampleToImage to .vti",
         ),
         ("STRUCTURED_POINTS", "POLYDATA", "POLYDATA"),
         ("STRUCTURED_POINTS", "MINE", "`MINE`"),

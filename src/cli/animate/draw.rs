@@ -23,6 +23,7 @@ use crate::{
         memory::{DeviceMemory, DeviceRoom, Held, leaves_room},
         output,
         progress::Progress,
+        reasons::Unseen,
         renderer::{Device, Job, Renderer},
         scene_inputs::{Parts, SceneInputs},
         timings::{Timings, ms_since},
@@ -393,10 +394,14 @@ impl Drawing<'_> {
 
     fn say_empty(&self, seen: &[Seen], drawn: usize) {
         let empty = seen.iter().flat_map(|seen| &seen.empty);
-        if let Some((number, why)) = empty.clone().min() {
+        if let Some((number, Unseen { why, .. })) = empty.clone().min() {
+            let what = match empty.clone().all(|(_, unseen)| unseen.is_empty) {
+                true => "are empty",
+                false => "show nothing of the volume",
+            };
             let count = empty.count();
             self.progress.note(&format!(
-                "{count} of {drawn} frames are empty, frame {number} because: {why}"
+                "{count} of {drawn} frames {what}, frame {number} because: {why}"
             ));
         }
     }

@@ -10,7 +10,7 @@ use crate::{
     cli::{
         Error,
         line::Line,
-        reasons::why_empty,
+        reasons::{Unseen, why_empty},
         renderer::{Device, Job, Renderer},
         scene_inputs::Parts,
         timings::{FrameTime, Timings, ms_since, peak_rss_bytes},
@@ -51,7 +51,7 @@ pub struct Seen {
     /// Frames by their place, and what they took.
     pub frames: Vec<(usize, FrameTime)>,
     /// Frames that show nothing, and why.
-    pub empty: Vec<(u32, String)>,
+    pub empty: Vec<(u32, Unseen)>,
     /// Samples of the last frame, on the device that drew it.
     pub samples: Option<u64>,
     /// The most memory of the process by then.
@@ -184,9 +184,11 @@ impl Work<'_> {
         };
         seen.frames.push((at, time));
         let reasoned = self.parts.only(classification);
-        if let Some(why) = why_empty(&frame.picture, volume, reasoned, camera, settings) {
-            seen.empty.push((number, why));
-        }
+        let has_others =
+            self.drawing.content.lines().is_some() && !self.drawing.scene.hides_volume();
+        let picture = &frame.picture;
+        let unseen = why_empty(picture, has_others, volume, reasoned, camera, settings);
+        seen.empty.extend(unseen.map(|unseen| (number, unseen)));
         Ok(frame.picture)
     }
 

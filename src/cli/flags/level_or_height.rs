@@ -2,7 +2,7 @@
 
 use crate::cli::Error;
 use crate::flow::height_of_pressure;
-use crate::volume::Header;
+use crate::volume::{Header, Heights};
 use glam::DVec3;
 use std::{fmt, str::FromStr};
 
@@ -44,10 +44,16 @@ impl LevelOrHeight {
                 let middle = DVec3::new(0.5, 0.5, f64::from(voxel) + 0.5);
                 Ok(header.world_from_voxel.transform_point3(middle).z)
             }
-            Self::Metres(_) if header.heights_are_pressures => Err(refused(
+            Self::Metres(_) | Self::Pascals(_) if header.heights == Heights::Levels => {
+                Err(refused(format!(
+                    "levels of the input are only numbers: wanted one from 0 to {}",
+                    header.dims[2].saturating_sub(1)
+                )))
+            }
+            Self::Metres(_) if header.heights == Heights::Pressures => Err(refused(
                 "heights of the input are pressures: wanted such as 850hPa".to_owned(),
             )),
-            Self::Pascals(_) if !header.heights_are_pressures => Err(refused(
+            Self::Pascals(_) if header.heights != Heights::Pressures => Err(refused(
                 "heights of the input are no pressures: wanted such as 1500m".to_owned(),
             )),
             Self::Metres(metres) => match header.length_metres {
@@ -161,7 +167,10 @@ mod tests {
         // Levels fall: the last is the lowest.
         header.world_from_voxel.matrix3.z_axis.z = -0.5;
         assert_eq!(of(&header, "0"), Some(-1.75));
-        header.heights_are_pressures = true;
+        header.heights = Heights::Levels;
+        assert_eq!(of(&header, "0"), Some(-1.75));
+        assert_eq!((of(&header, "500m"), of(&header, "850hPa")), (None, None));
+        header.heights = Heights::Pressures;
         assert_eq!(of(&header, "500m"), None);
         let found = of(&header, "850hPa").expect("a height");
         // 850 hPa lie at 1457 m.

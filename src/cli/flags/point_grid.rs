@@ -4,12 +4,15 @@ use super::numbers::positive;
 use super::{Error, InputFlags};
 use crate::cli::{exaggerate, memory::in_units};
 use crate::format::PointFile;
+use crate::named::Named;
 use crate::points::interpolate::{GridSize, Method, NoField, Options};
 use crate::volume::{Grid, Source};
-use clap::Args;
+use clap::builder::{EnumValueParser, PossibleValue, TypedValueParser};
+use clap::error::ErrorKind;
+use clap::{Arg, Args, Command, ValueEnum};
 use glam::{DAffine3, DMat3, DVec3};
 use serde::{Deserialize, Serialize};
-use std::{fmt, str::FromStr};
+use std::{ffi::OsStr, fmt, str::FromStr};
 
 /// The words, none of them filled in.
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -27,7 +30,7 @@ pub struct PointGridFlags {
     /// How values between points are made [default: shepard]
     #[arg(
         long,
-        value_enum,
+        value_parser = MethodParser,
         value_name = "METHOD",
         help_heading = "Scattered points"
     )]
@@ -42,6 +45,43 @@ pub struct PointGridFlags {
     #[arg(long, value_name = "FACTOR", value_parser = positive, help_heading = "Scattered points")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub anisotropy: Option<f64>,
+}
+
+/// Methods by their names; those that are known and not there are refused as such.
+#[derive(Clone, Copy, Debug)]
+struct MethodParser;
+
+/// Names of these.
+const NOT_BUILT: [&str; 2] = ["natural", "thin-plate"];
+
+impl TypedValueParser for MethodParser {
+    type Value = Method;
+
+    fn parse_ref(
+        &self,
+        command: &Command,
+        arg: Option<&Arg>,
+        value: &OsStr,
+    ) -> Result<Method, clap::Error> {
+        if NOT_BUILT.iter().any(|name| value == *name) {
+            let names: Vec<_> = Method::ALL.iter().map(|method| method.name()).collect();
+            return Err(clap::Error::raw(
+                ErrorKind::InvalidValue,
+                format!(
+                    "--interpolate {}: not built yet, wanted one of {}\n",
+                    value.display(),
+                    names.join(", ")
+                ),
+            )
+            .with_cmd(command));
+        }
+        EnumValueParser::new().parse_ref(command, arg, value)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        let all = Method::value_variants().iter();
+        Some(Box::new(all.filter_map(ValueEnum::to_possible_value)))
+    }
 }
 
 /// `auto`, `64x64x32` or `0.5`.

@@ -138,6 +138,7 @@ impl DrawnLines {
             return Ok(None);
         }
         let stretch = DVec3::new(1.0, 1.0, height_factor);
+        let said = header.notes.as_slice();
         let mut drawn = Self::default();
         let at = of_film.map(|film| film.time);
         drawn.ground = Ground::read(scene, header, stretch, at, progress)?;
@@ -148,10 +149,10 @@ impl DrawnLines {
             let of_seeds = of_film.filter(|film| !film.seeds.is_empty());
             match of_film.and_then(|film| film.ways.map(|ways| (ways, ways.now(&film)))) {
                 Some((ways, now)) => drawn.add_ways(ways, word, scene, Some(now))?,
-                None => drawn.add_wind(word, scene, stretch, of_seeds, progress)?,
+                None => drawn.add_wind(word, scene, stretch, of_seeds, said, progress)?,
             }
         }
-        drawn.add_barbs(scene, stretch, of_film, progress)?;
+        drawn.add_barbs(scene, stretch, of_film, said, progress)?;
         Ok(Some(drawn))
     }
 
@@ -208,6 +209,7 @@ impl DrawnLines {
         scene: &SceneFlags,
         stretch: DVec3,
         of_film: Option<FilmTime>,
+        said: &[String],
         progress: &Progress,
     ) -> Result<(), Error> {
         let Some(words) = scene.barbs.barbs else {
@@ -230,15 +232,16 @@ impl DrawnLines {
             color: linear(color),
             casing: casing.map(linear),
             of_film,
+            said,
         };
         // What there is to say of the wind was said of its lines.
         let quiet = Progress::of_part();
-        let of_file = if scene.flow.flow.is_some() {
+        let of_wind = if scene.flow.flow.is_some() {
             &quiet
         } else {
             progress
         };
-        let barbs = Barbs::read(&request, of_file, progress)?;
+        let barbs = Barbs::read(&request, of_wind, progress)?;
         self.words.push(barbs.words.clone());
         self.barbs = Some(barbs);
         Ok(())
@@ -250,13 +253,12 @@ impl DrawnLines {
         scene: &SceneFlags,
         stretch: DVec3,
         of_film: Option<FilmTime>,
+        said: &[String],
         progress: &Progress,
     ) -> Result<(), Error> {
         let (flags, style) = (&scene.flow, &scene.flow_style);
-        flags.check_words()?;
         let input = &input_of_wind(scene);
-        let quiet = Progress::of_part();
-        let traced = flags.traced(word, input, of_film, &quiet, progress)?;
+        let traced = flags.traced(word, input, of_film, Some(said), progress)?;
         let one = match flags.color()? {
             Some(FlowColor::One(color)) => Some(color),
             _ => None,

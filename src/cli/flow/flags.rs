@@ -102,6 +102,13 @@ impl FromStr for WindWords {
                 "wanted the name of a variable at each place, found {text:?}"
             ));
         }
+        for (k, name) in names.iter().enumerate() {
+            if names[..k].contains(name) {
+                return Err(format!(
+                    "wanted another variable at each place, found {name} twice in {text:?}"
+                ));
+            }
+        }
         Ok(Self {
             east: (*east).to_owned(),
             north: (*north).to_owned(),
@@ -124,7 +131,6 @@ pub struct FlowFlags {
     #[arg(
         long,
         value_name = "SEEDS",
-        requires = "flow",
         allow_hyphen_values = true,
         value_parser = word_of::<Seeds>,
         help_heading = HEADING
@@ -136,7 +142,6 @@ pub struct FlowFlags {
         long,
         value_enum,
         value_name = "WAY",
-        requires = "flow",
         help_heading = HEADING
     )]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -146,18 +151,17 @@ pub struct FlowFlags {
     #[arg(
         long,
         value_name = "VAR|R:G:B",
-        requires = "flow",
         value_parser = word_of::<FlowColor>,
         help_heading = HEADING
     )]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flow_color: Option<String>,
     /// Lines are no longer, each way, in world length
-    #[arg(long, value_name = "L", value_parser = positive, requires = "flow", help_heading = HEADING)]
+    #[arg(long, value_name = "L", value_parser = positive, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flow_length: Option<f64>,
     /// Lines are followed no longer, each way: seconds, or with s, min, h or d
-    #[arg(long, value_name = "T", value_parser = duration, requires = "flow", help_heading = HEADING)]
+    #[arg(long, value_name = "T", value_parser = duration, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flow_time: Option<f64>,
     /// The variables of the wind: to the east, to the north, upwards [default: by their standard names, then U and V, u and
@@ -183,6 +187,20 @@ impl FlowFlags {
     /// What colours lines, where that is said.
     pub(super) fn color(&self) -> Result<Option<FlowColor>, Error> {
         parsed("--flow-color", self.flow_color.as_deref())
+    }
+
+    /// The first of these words that says how lines go, where there are none.
+    pub fn word_without_lines(&self) -> Option<&'static str> {
+        let words = [
+            ("--flow-seeds", self.flow_seeds.is_some()),
+            ("--flow-direction", self.flow_direction.is_some()),
+            ("--flow-color", self.flow_color.is_some()),
+            ("--flow-length", self.flow_length.is_some()),
+            ("--flow-time", self.flow_time.is_some()),
+        ];
+        let mut given = words.into_iter().filter(|&(_, is_given)| is_given);
+        let first = given.next().map(|(word, _)| word);
+        first.filter(|_| self.flow.is_none())
     }
 
     /// The variables of the wind, where they are said.
@@ -251,5 +269,6 @@ mod tests {
         assert_eq!(up("U,V,none"), Ok(Some(None)));
         assert_eq!(up("U, V, W"), Ok(Some(Some("W".to_owned()))));
         assert!(up("U").is_err() && up("U,,W").is_err());
+        assert!(up("U,U").is_err() && up("U, V, U").is_err());
     }
 }

@@ -22,7 +22,7 @@ const LAND_MASKS: [&str; 3] = ["LANDMASK", "lsm", "land_binary_mask"];
 
 /// Heights of the ground in world length, one a column of the grid; `None` where the file has none, or heights are none.
 pub fn heights(variables: &Variables<'_>, header: &Header) -> Result<Option<Vec<f64>>, Error> {
-    let metres = match header.length_metres {
+    let metres = match header.height_metres() {
         Some(metres) if header.is_earth => metres,
         _ => return Ok(None),
     };

@@ -30,14 +30,18 @@ pub use moving::Ways;
 pub use style::FlowStyleFlags;
 pub use variable::{Variables, numbers};
 
-use super::{Error, exaggerate, flags::InputFlags, progress::Progress, signals::Gate};
+use super::{
+    Error, exaggerate, flags::InputFlags, map::OnEarth, progress::Progress, signals::Gate,
+};
 use crate::annotate::{caption, unit};
-use crate::flow::write::{Geography, LineValues, write_csv, write_vtp};
+use crate::figure::short;
+use crate::flow::write::{Geography, LineValues, Upright, write_csv, write_vtp};
 use crate::flow::{
     Direction, EvenLines, Limits, Line, Seeds, even_stream_lines, path_lines_from, streak_lines,
     stream_lines,
 };
 use crate::picture::{OutputError, OutputFile, OutputProblem};
+use crate::volume::{Grid, Header};
 use flags::FlowColor;
 use glam::DVec3;
 use std::io::{BufWriter, Write};
@@ -49,6 +53,12 @@ const PARTICLES: Seeds = Seeds::Random {
     count: 200,
     seed: 0,
 };
+
+/// Between two places of a cell the wind is linear: lines that are nearer than this part of it show nothing more.
+const LEAST_OF_CELL: f64 = 0.5;
+
+/// Seeds from one word of progress to the next, some for each thread.
+const PART: usize = 1024;
 
 /// Lines, with the wind that they follow.
 struct Traced {
@@ -117,20 +127,28 @@ impl FlowFlags {
         Ok(())
     }
 
-    /// Reads the wind, whose notes `of_file` hears, and traces the lines.
+    /// Reads the wind, of whose file this was `said` where something was, and traces the lines.
     fn traced(
         &self,
         word: FlowWord,
         input: &InputFlags,
         of_film: Option<FilmTime>,
-        of_file: &Progress,
+        said: Option<&[String]>,
         progress: &Progress,
     ) -> Result<Traced, Error> {
         let limits = input.limits();
         let variables = Variables { input, limits };
         let is_of_particles = word != FlowWord::Stream;
         let at = of_film.map(|film| film.time);
-        let wind = wind::read(&variables, self.wind_words()?.as_ref(), word, at, of_file)?;
+        let words = self.wind_words()?;
+        let wind = wind::read(&variables, words.as_ref(), word, at, said, progress)?;
+        let painted = match self.color()? {
+            Some(FlowColor::Variable(name)) => {
+                let source = variables.open(&name)?;
+                Some((name, caption(source.header()), unit(source.header())))
+            }
+            _ => None,
+        };
         let start = match at {
             Some(time) => time.fract(),
             None => self.start(word, input, &wind)?,
@@ -145,14 +163,12 @@ impl FlowFlags {
             causes::say_displacement(&lines, &wind, progress);
         }
         let at = |time: f64| if is_of_particles { time } else { start };
-        let (values, caption, unit) = match self.color()? {
-            Some(FlowColor::Variable(name)) => {
-                let source = variables.open(&name)?;
-                let words = (caption(source.header()), unit(source.header()));
+        let (values, caption, unit) = match painted {
+            Some((name, caption, unit)) => {
                 let values = value::along(&lines, &name, &wind, at, &variables)?;
-                (values, words.0, words.1)
+                (values, caption, unit)
             }
-            _ => {
+            None => {
                 let unit = wind.header.is_earth.then(|| "m s-1".to_owned());
                 (LineValues::speeds(&lines), "Wind speed".to_owned(), unit)
             }
@@ -182,14 +198,22 @@ impl FlowFlags {
             values,
             wind,
             ..
-        } = self.traced(word, input, None, progress, progress)?;
+        } = self.traced(word, input, None, None, progress)?;
         progress.stage("write", 0, 1);
         let make = || OutputFile::create(path, force);
         let mut file = gate.unfinished(make, |file| file.part().to_owned())?;
         let mut out = BufWriter::new(&mut file);
         let written = match format {
             LineFormat::Vtp => write_vtp(&lines, &values, &mut out),
-            LineFormat::Csv => write_csv(&lines, &values, geography(&wind), &mut out),
+            LineFormat::Csv => {
+                let on_earth = OnEarth::of(&wind.header);
+                let degrees = on_earth.map(|on_earth| move |at| on_earth.degrees(at));
+                let geography = Geography {
+                    degrees: degrees.as_ref().map(|degrees| degrees as &_),
+                    upright: upright(&wind.header),
+                };
+                write_csv(&lines, &values, geography, &mut out)
+            }
             LineFormat::Glb => {
                 let one = match self.color()? {
                     Some(FlowColor::One(color)) => Some(color),
@@ -273,22 +297,23 @@ impl FlowFlags {
         if word != FlowWord::Path && seeds.iter().any(|(_, time)| time.is_some()) {
             progress.note("times of seeds are for --flow path");
         }
-        let places: Vec<DVec3> = seeds.iter().map(|&(place, _)| place).collect();
-        Ok(match word {
-            FlowWord::Stream => stream_lines(&wind.field, start, &places, direction, &limits),
-            FlowWord::Path => {
-                let seeds: Vec<_> = seeds
-                    .iter()
-                    .map(|&(place, time)| (time.unwrap_or(start), place))
-                    .collect();
-                path_lines_from(&wind.field, &seeds, direction, &limits)
+        let seeds: Vec<(f64, DVec3)> = seeds
+            .iter()
+            .map(|&(place, time)| (time.unwrap_or(start), place))
+            .collect();
+        let trace = |seeds: &[(f64, DVec3)]| {
+            let places = || seeds.iter().map(|&(_, place)| place).collect::<Vec<_>>();
+            match word {
+                FlowWord::Stream => stream_lines(&wind.field, start, &places(), direction, &limits),
+                FlowWord::Path => path_lines_from(&wind.field, seeds, direction, &limits),
+                FlowWord::Streak => {
+                    let first = wind.times.first().map_or(0.0, |&(_, seconds)| seconds);
+                    let since = first.max(start - limits.duration);
+                    streak_lines(&wind.field, [since, start], &places(), &limits)
+                }
             }
-            FlowWord::Streak => {
-                let first = wind.times.first().map_or(0.0, |&(_, seconds)| seconds);
-                let since = first.max(start - limits.duration);
-                streak_lines(&wind.field, [since, start], &places, &limits)
-            }
-        })
+        };
+        Ok(in_parts(&seeds, trace, progress))
     }
 
     fn even(
@@ -306,9 +331,37 @@ impl FlowFlags {
         };
         let mut spacing = EvenLines::of(&wind.grid, stretch);
         if let Seeds::EvenAt(distance) = words {
+            let least = LEAST_OF_CELL * shortest_side(&wind.grid, stretch);
+            if *distance < least {
+                return Err(Error::usage(
+                    format!(
+                        "--flow-seeds even:{distance}: wanted a distance of at least {}, half of the shortest side of a cell \
+                         as it is seen: nearer lines show nothing more",
+                        short(least)
+                    ),
+                    "--flow-seeds even",
+                ));
+            }
             spacing.distance = *distance;
         }
-        let lines = even_stream_lines(&wind.field, start, &wind.grid, spacing, direction, limits);
+        let mut vertices = 0;
+        let mut told = |line: &Line, count: usize| {
+            vertices += line.vertices.len();
+            let [lines, vertices] = [
+                count as f64 / spacing.most as f64,
+                vertices as f64 / spacing.most_vertices as f64,
+            ];
+            progress.part(lines.max(vertices).min(1.0));
+        };
+        let lines = even_stream_lines(
+            &wind.field,
+            start,
+            &wind.grid,
+            spacing,
+            direction,
+            limits,
+            &mut told,
+        );
         if lines.is_empty() {
             return Err(Error::usage(
                 format!(
@@ -318,23 +371,51 @@ impl FlowFlags {
                 "--flow-seeds even:D with a smaller D, or random:200",
             ));
         }
-        if lines.len() == spacing.most {
+        if lines.len() >= spacing.most || vertices >= spacing.most_vertices {
             progress.note(&format!(
-                "there is room for more than the {} lines; even:D with a D over {} has fewer",
-                spacing.most, spacing.distance
+                "there is room for more than the {} lines of {vertices} vertices: no more than {} lines and {} vertices are \
+                 made; even:D with a D over {} leaves no gaps",
+                lines.len(),
+                spacing.most,
+                spacing.most_vertices,
+                spacing.distance
             ));
         }
         Ok(lines)
     }
 }
 
-fn geography(wind: &Wind) -> Geography {
-    let header = &wind.header;
-    Geography {
-        degrees: match header.earth_degree_lengths() {
-            [Some(x), Some(y)] => Some([x, y]),
-            _ => None,
-        },
-        height: header.length_metres.filter(|_| header.is_earth),
+/// Lines of so many seeds at a time, in their order; `progress` hears how many are done.
+fn in_parts(
+    seeds: &[(f64, DVec3)],
+    trace: impl Fn(&[(f64, DVec3)]) -> Vec<Line>,
+    progress: &Progress,
+) -> Vec<Line> {
+    let mut lines = Vec::new();
+    for (part, seeds_of_part) in seeds.chunks(PART).enumerate() {
+        let before = part * PART;
+        progress.part(before as f64 / seeds.len() as f64);
+        lines.extend(trace(seeds_of_part).into_iter().map(|line| Line {
+            seed: before + line.seed,
+            ..line
+        }));
     }
+    lines
+}
+
+/// World length of the shortest side of a cell as it is seen, of the axes that have several.
+fn shortest_side(grid: &Grid, stretch: f64) -> f64 {
+    let m = grid.world_from_voxel.matrix3;
+    let seen = DVec3::new(1.0, 1.0, stretch);
+    let sides = (0..3).filter(|&k| grid.dims[k] > 1);
+    sides
+        .map(|k| (seen * m.col(k)).length())
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// What z of the world is.
+fn upright(header: &Header) -> Option<Upright> {
+    let level = header.level_length().map(Upright::Level);
+    let height = header.height_metres().filter(|_| header.is_earth);
+    level.or(height.map(Upright::Height))
 }

@@ -1,6 +1,6 @@
 //! From the words of `--flow-seeds` to places in the wind.
 
-use super::super::Error;
+use super::super::{Error, map::OnEarth};
 use super::variable::Variables;
 use super::wind::Wind;
 use crate::flow::{
@@ -92,22 +92,41 @@ fn of_file(path: &Path, header: &Header) -> Result<Vec<(DVec3, Option<f64>)>, Er
     }
     let text = std::fs::read_to_string(path).map_err(|cause| failed(cause.to_string()))?;
     let table = SeedTable::of(&text).map_err(|problem| failed(problem.to_string()))?;
+    let on_earth = OnEarth::of(header);
     let place = |p: DVec3| -> Result<DVec3, Error> {
         if table.are == SeedPlace::World {
             return Ok(p);
         }
-        let ([Some(x), Some(y)], Some(metres)) =
-            (header.earth_degree_lengths(), header.length_metres)
-        else {
-            let problem = "it has degrees, and the grid of the wind has none: x,y,z are wanted";
-            return Err(failed(problem.to_owned()));
+        let nowhere = "it has degrees, and the grid of the wind has no place on the Earth that is known, or its latitudes and \
+                       its map differ: x,y,z are wanted";
+        let on_earth = on_earth.ok_or_else(|| failed(nowhere.to_owned()))?;
+        let [x, y] = on_earth.place([p.x, p.y]).ok_or_else(|| {
+            let place = format!("longitude {}, latitude {}", p.x, p.y);
+            failed(format!("{place} lies nowhere on the map of the wind"))
+        })?;
+        let heights = "lon,lat,height or lon,lat,pressure are wanted";
+        let metres = header.height_metres();
+        let z = match (table.are, metres, header.level_length()) {
+            (SeedPlace::Level, _, Some(length)) => p.z * length,
+            (SeedPlace::Level, ..) => {
+                return Err(failed(format!(
+                    "it has levels, and the wind has heights: {heights}"
+                )));
+            }
+            (SeedPlace::Pressure, Some(metres), _) => {
+                let height = height_of_pressure(100.0 * p.z);
+                let wanted = || format!("a pressure over 0 is wanted, found {}", p.z);
+                height.ok_or_else(|| failed(wanted()))? / metres
+            }
+            (_, Some(metres), _) => p.z / metres,
+            (_, None, _) => {
+                return Err(failed(
+                    "it has heights, and levels of the wind are only numbers: lon,lat,level are wanted, 0 the lowest"
+                        .to_owned(),
+                ));
+            }
         };
-        let height = match table.are {
-            SeedPlace::Pressure => height_of_pressure(100.0 * p.z)
-                .ok_or_else(|| failed(format!("a pressure over 0 is wanted, found {}", p.z)))?,
-            _ => p.z,
-        };
-        Ok(DVec3::new(p.x * x, p.y * y, height / metres))
+        Ok(DVec3::new(x, y, z))
     };
     let seeds = table.seeds.iter();
     seeds

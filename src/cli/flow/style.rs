@@ -1,7 +1,7 @@
 //! How lines look in a picture: the words.
 
 use super::flags::duration;
-use crate::cli::flags::Numbers;
+use crate::cli::{Error, flags::Numbers};
 use crate::transfer::Colormap;
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
@@ -24,24 +24,24 @@ pub enum StyleWord {
 #[serde(default, deny_unknown_fields)]
 pub struct FlowStyleFlags {
     /// What stands for a line [default: arrows for stream, else tube]
-    #[arg(long, value_enum, value_name = "STYLE", requires = "flow", help_heading = HEADING)]
+    #[arg(long, value_enum, value_name = "STYLE", help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flow_style: Option<StyleWord>,
     /// How long comets are: seconds, or with s, min, h or d [default: the whole of a stream line; of path lines an eighth of
     /// the times of the file]
-    #[arg(long, value_name = "T", value_parser = duration, requires = "flow", help_heading = HEADING)]
+    #[arg(long, value_name = "T", value_parser = duration, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub comet_time: Option<f64>,
     /// Width of lines in pixels, where the camera is turned to [default: 3, of the heads of comets 6]
-    #[arg(long, value_name = "PX", value_parser = width, requires = "flow", help_heading = HEADING)]
+    #[arg(long, value_name = "PX", value_parser = width, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flow_width: Option<f64>,
     /// Values at the ends of the colours of lines [default: from 0 to what 99.9 % of them are under]
-    #[arg(long, value_name = "LO,HI", allow_hyphen_values = true, requires = "flow", help_heading = HEADING)]
+    #[arg(long, value_name = "LO,HI", allow_hyphen_values = true, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flow_range: Option<Numbers<2>>,
     /// The colours of lines [default: plasma from yellow to violet, the strongest]
-    #[arg(long, value_name = "NAME", value_parser = map, requires = "flow", help_heading = HEADING)]
+    #[arg(long, value_name = "NAME", value_parser = map, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flow_colormap: Option<String>,
     /// Draw lines without the volume
@@ -50,7 +50,48 @@ pub struct FlowStyleFlags {
     pub hide_volume: bool,
 }
 
+impl FlowStyleFlags {
+    /// The first of these words that says how lines look.
+    pub fn word(&self) -> Option<&'static str> {
+        let words = [
+            ("--flow-style", self.flow_style.is_some()),
+            ("--comet-time", self.comet_time.is_some()),
+            ("--flow-width", self.flow_width.is_some()),
+            ("--flow-range", self.flow_range.is_some()),
+            ("--flow-colormap", self.flow_colormap.is_some()),
+        ];
+        let mut given = words.into_iter().filter(|&(_, is_given)| is_given);
+        given.next().map(|(word, _)| word)
+    }
+
+    /// What can be refused before anything is read; `height` is the one of the picture in pixels.
+    pub fn check(&self, height: u32) -> Result<(), Error> {
+        if let Some(range @ Numbers([low, high])) = self.flow_range
+            && !(low < high && (high - low).is_finite())
+        {
+            return Err(Error::usage(
+                format!("--flow-range {range}: wanted LO,HI, the first under the other"),
+                "--flow-range 0,30",
+            ));
+        }
+        let most = (WIDEST_PART * f64::from(height)).max(WIDEST_AT_LEAST);
+        match self.flow_width.filter(|&width| width > most) {
+            Some(width) => Err(Error::usage(
+                format!(
+                    "--flow-width {width}: wanted at most {most} pixels of a picture of {height} rows"
+                ),
+                format!("--flow-width {most}"),
+            )),
+            None => Ok(()),
+        }
+    }
+}
+
 const HEADING: &str = "Lines";
+
+/// Lines are no broader than this part of the height of the picture, or than these pixels: each would cover most of it.
+const WIDEST_PART: f64 = 0.125;
+const WIDEST_AT_LEAST: f64 = 16.0;
 
 /// A line is no thinner, else pixels miss it.
 const THINNEST_PIXELS: f64 = 1.2;

@@ -11,7 +11,7 @@ use super::ground;
 use super::variable::{Variables, numbers};
 use crate::flow::wind::{WindUnit, filled_down, metric_of, seconds_since_first};
 use crate::flow::{FieldError, GridField, Snapshot, Vertical};
-use crate::volume::{Grid, Header, Source, is_same_grid, regridded};
+use crate::volume::{Grid, Header, Heights, Source, is_same_grid, regridded};
 
 /// A wind, and what is known of its grid.
 pub struct Wind {
@@ -22,25 +22,33 @@ pub struct Wind {
     pub times: Vec<(u32, f64)>,
 }
 
-/// Reads the wind at all times of particles, and at the one of the words for stream lines.
+/// Reads the wind at all times of particles, and at the one of the words for stream lines. `said` is what was said of the file,
+/// where something was: that, and which time is taken, is not said again.
 pub fn read(
     variables: &Variables<'_>,
     words: Option<&WindWords>,
     word: FlowWord,
     at: Option<f64>,
+    said: Option<&[String]>,
     progress: &Progress,
 ) -> Result<Wind, Error> {
     let components = components(variables, words, progress)?;
     let header = components.east.0.header().clone();
     let grid = grid_of(&header);
     check_grids(&components, &header)?;
-    for note in &header.notes {
+    let is_new = |note: &&String| said.is_none_or(|said| !said.contains(note));
+    for note in header.notes.iter().filter(is_new) {
         progress.note(note);
     }
     let (units, up) = units(&components, &header, progress)?;
     let times = match at {
         Some(time) => between(time),
-        None => times(variables, &header, word, progress)?,
+        None => {
+            let (times, note) = times(variables, &header, word)?;
+            let note = note.filter(|_| said.is_none());
+            note.iter().for_each(|note| progress.note(note));
+            times
+        }
     };
     let voxels = header.voxel_count();
     let wanted = voxels.saturating_mul(12 * times.len() as u64 + 12);
@@ -139,8 +147,15 @@ fn units(
             silent.join(", ")
         ));
     }
+    if components.up.is_some() && header.heights == Heights::Levels {
+        progress.note(
+            "levels are only numbers: without heights the upward wind is left out, and lines stay in their level",
+        );
+        units[2].kind = Vertical::Metres;
+        return Ok((units, false));
+    }
     let is_in_pressures = units[2].kind == Vertical::Pascals;
-    if components.up.is_some() && is_in_pressures && !header.heights_are_pressures {
+    if components.up.is_some() && is_in_pressures && header.heights != Heights::Pressures {
         progress.note("levels are no pressures: without an upward wind lines stay in their level");
         units[2].kind = Vertical::Metres;
         return Ok((units, false));
@@ -158,18 +173,19 @@ fn between(time: f64) -> Vec<(u32, f64)> {
     times
 }
 
-/// The times that are read, and their seconds since the first of the file.
+/// Numbers of times, and their seconds since the first of the file.
+type Times = Vec<(u32, f64)>;
+
+/// The times that are read, and what a person should know about the choice.
 fn times(
     variables: &Variables<'_>,
     header: &Header,
     word: FlowWord,
-    progress: &Progress,
-) -> Result<Vec<(u32, f64)>, Error> {
+) -> Result<(Times, Option<String>), Error> {
     let seconds = seconds_since_first(&header.time_names);
     if word == FlowWord::Stream {
         let (time, note) = variables.input.time(header)?;
-        note.iter().for_each(|note| progress.note(note));
-        return Ok(vec![(time, 0.0)]);
+        return Ok((vec![(time, 0.0)], note));
     }
     if header.times < 2 {
         return Err(Error::usage(
@@ -189,5 +205,5 @@ fn times(
             "--flow stream",
         )
     })?;
-    Ok((0..header.times).zip(seconds).collect())
+    Ok(((0..header.times).zip(seconds).collect(), None))
 }

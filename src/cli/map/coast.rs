@@ -106,9 +106,12 @@ pub(super) fn without_edges(line: Vec<[f64; 2]>) -> Lines {
     parts
 }
 
+/// Farther south there is no coast: files close Antarctica along this latitude, or nearer to the pole.
+const POLE: f64 = -89.99;
+
 fn is_edge(a: [f64; 2], b: [f64; 2]) -> bool {
     let is_cut = |place: [f64; 2]| place[0].abs() == 180.0;
-    is_cut(a) && is_cut(b) || a[1] == -90.0 && b[1] == -90.0
+    is_cut(a) && is_cut(b) || a[1] < POLE && b[1] < POLE
 }
 
 #[cfg(test)]
@@ -126,6 +129,7 @@ mod tests {
             [0.0, -70.0],
             [180.0, -84.0],
             [180.0, -90.0],
+            [0.0, -89.999],
             [-180.0, -90.0],
             [-180.0, -84.0],
         ];

@@ -1,7 +1,7 @@
 //! `--map coast,borders,graticule,terrain`: where the volume lies on the Earth, drawn at sea level or on the terrain.
 //!
 //! ```text
-//! margin      a fifth of the box's larger side around it
+//! margin      a fifth of the box's larger side around it; along x no more than once around the Earth together
 //! graticule   meridians and parallels every 1, 2, 5, 10, 15 or 30 degrees, four of them at least
 //! ```
 
@@ -15,7 +15,7 @@ use clap::Args;
 use coast::CoastFile;
 use earth::{Lines, earth};
 use glam::DVec3;
-use project::{FINE, Projection, projected_line};
+use project::{FINE, Projection, projected_line, turns};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::{fmt, str::FromStr};
@@ -81,6 +81,38 @@ impl MapFlags {
     }
 }
 
+/// Where x and y of the world lie on the Earth, and back.
+#[derive(Clone, Copy, Debug)]
+pub struct OnEarth {
+    projection: Projection,
+    /// Longitude of the middle of the grid.
+    middle: f64,
+}
+
+impl OnEarth {
+    /// That of a volume; `None` where it has no place on the Earth, or its latitudes and its map differ.
+    pub fn of(header: &Header) -> Option<Self> {
+        let projection = Projection::of(header)?;
+        let off = header.map.and_then(|map| projection.disagreement(&map));
+        let half = 0.5 * DVec3::from_array(header.dims.map(f64::from));
+        let place = header.world_from_voxel.transform_point3(half);
+        let [middle, _] = projection.earth([place.x, place.y]);
+        off.is_none().then_some(Self { projection, middle })
+    }
+
+    /// Longitude and latitude in degrees.
+    pub fn degrees(&self, at: [f64; 2]) -> [f64; 2] {
+        self.projection.earth(at)
+    }
+
+    /// x and y of a longitude and a latitude, within half of the Earth from the middle of the grid; `None` where the map has
+    /// no such place.
+    pub fn place(&self, [longitude, latitude]: [f64; 2]) -> Option<[f64; 2]> {
+        let near = longitude + 360.0 * turns(self.middle, longitude);
+        self.projection.place([near, latitude])
+    }
+}
+
 /// Whether a place of the world lies in the southern hemisphere; none does where the latitude is not known.
 pub fn is_southern(header: &Header) -> impl Fn(DVec3) -> bool {
     let projection = Projection::of(header);
@@ -104,6 +136,8 @@ pub struct GroundLine {
 const MARGIN: f64 = 0.2;
 /// Degrees between lines of a graticule.
 const STEPS: [f64; 8] = [0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0];
+/// More lines of a graticule are a grey sheet.
+const MOST_OF_GRATICULE: usize = 360;
 /// Grey and pixels of coast, borders and graticule.
 const COAST: (f32, f64) = (0.8, 2.0);
 const BORDERS: (f32, f64) = (0.6, 1.5);
@@ -115,12 +149,7 @@ impl MapWords {
 
     /// True where a volume has a place on the Earth.
     pub fn can_show(header: &Header) -> bool {
-        let off = |projection: Projection| {
-            header
-                .map
-                .is_none_or(|map| projection.disagreement(&map).is_none())
-        };
-        Projection::of(header).is_some_and(off)
+        OnEarth::of(header).is_some()
     }
 
     /// True where heights of the ground are drawn.
@@ -156,15 +185,26 @@ impl MapWords {
             dims: header.dims,
             world_from_voxel: header.world_from_voxel,
         };
-        let area = Area::around(&grid);
+        let area = Area::around(&grid, projection.turn_length());
         let mut lines = Vec::new();
-        if let Some(degrees) = self.graticule {
-            for (line, degrees) in graticule(&area, degrees) {
+        if let Some(step) = self.graticule {
+            let mut count = 0;
+            for (line, degrees) in graticule(&area, step) {
                 let first = lines.len();
                 let places = projected(&projection, &area, [line.as_slice()].into_iter());
                 area.add(&mut lines, &places, GRATICULE);
                 for line in &mut lines[first..] {
                     line.degrees = Some(degrees);
+                }
+                count += usize::from(lines.len() > first);
+                if count > MOST_OF_GRATICULE {
+                    return Err(Error::usage(
+                        format!(
+                            "--map graticule={step}: wanted at most {MOST_OF_GRATICULE} meridians and parallels around the volume, \
+                             found more"
+                        ),
+                        "--map graticule chooses how many degrees lie between them",
+                    ));
                 }
             }
         }
@@ -184,7 +224,7 @@ impl MapWords {
 
 /// World height of what lies on the ground: sea level, or the face of the box nearest to it.
 pub fn ground_height(grid: &Grid) -> f64 {
-    Area::around(grid).height
+    Area::around(grid, None).height
 }
 
 /// Places on the map, a line each.
@@ -198,8 +238,9 @@ struct Area {
 }
 
 impl Area {
-    /// The box with a margin, at sea level or at the face of the box nearest to it.
-    fn around(grid: &Grid) -> Self {
+    /// The box with a margin, at sea level or at the face of the box nearest to it. Where x goes around the Earth in some
+    /// world length, it is no wider than that: nothing is there twice.
+    fn around(grid: &Grid, turn_length: Option<f64>) -> Self {
         let corners = (0..8).map(|i| {
             let far = grid.far_corner();
             let bit = |k: usize| if i >> k & 1 == 1 { far[k] } else { 0.0 };
@@ -211,9 +252,11 @@ impl Area {
             |(low, high), corner| (low.min(corner), high.max(corner)),
         );
         let margin = MARGIN * (high - low).truncate().max_element();
+        let rest = turn_length.map_or(f64::INFINITY, |turn| turn - (high.x - low.x));
+        let along_x = margin.min(0.5 * rest.max(0.0));
         Self {
-            low: [low.x - margin, low.y - margin],
-            high: [high.x + margin, high.y + margin],
+            low: [low.x - along_x, low.y - margin],
+            high: [high.x + along_x, high.y + margin],
             height: 0.0_f64.clamp(low.z, high.z),
         }
     }
@@ -404,5 +447,29 @@ impl TryFrom<String> for MapWords {
 impl From<MapWords> for String {
     fn from(words: MapWords) -> Self {
         words.to_string()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DAffine3;
+
+    #[test]
+    fn a_margin_goes_no_farther_than_around_the_earth() {
+        let area = |columns: u32, turn_length| {
+            let grid = Grid {
+                dims: [columns, 100, 3],
+                world_from_voxel: DAffine3::IDENTITY,
+            };
+            let Area { low, high, .. } = Area::around(&grid, turn_length);
+            [[low[0], high[0]], [low[1], high[1]]]
+        };
+        // A unit a degree: the whole Earth, nearly all of it, and a part.
+        assert_eq!(area(360, Some(360.0)), [[0.0, 360.0], [-72.0, 172.0]]);
+        assert_eq!(area(350, Some(360.0))[0], [-5.0, 355.0]);
+        assert_eq!(area(100, Some(360.0))[0], [-20.0, 120.0]);
+        assert_eq!(area(370, Some(360.0))[0], [0.0, 370.0]);
+        assert_eq!(area(360, None)[0], [-72.0, 432.0]);
     }
 }

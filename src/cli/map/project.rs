@@ -126,48 +126,70 @@ impl Projection {
         }
     }
 
-    /// The latitude in degrees of x and y of the world.
-    pub fn latitude(&self, [x, y]: [f64; 2]) -> f64 {
-        if let Self::MovedPole {
-            pole,
-            degree_lengths: [along_x, along_y],
-            ..
-        } = *self
-        {
-            return pole.earth_from_grid([x / along_x, y / along_y])[1];
+    /// World length along x once around the Earth; `None` where the map does not go around it along x.
+    pub fn turn_length(&self) -> Option<f64> {
+        match *self {
+            Self::Degrees([x, _])
+            | Self::MovedPole {
+                degree_lengths: [x, _],
+                ..
+            } => Some(360.0 * x),
+            Self::Map {
+                kind: MapKind::Mercator,
+                true_latitudes: [first, _],
+                ..
+            } => Some(std::f64::consts::TAU * RADIUS * first.to_radians().cos()),
+            Self::Map { .. } => None,
         }
-        let Self::Map {
-            kind,
-            true_latitudes,
-            origin,
-            ..
-        } = *self
-        else {
-            let Self::Degrees([_, degree]) = *self else {
-                return f64::NAN;
-            };
-            return y / degree;
+    }
+
+    /// The latitude in degrees of x and y of the world.
+    pub fn latitude(&self, at: [f64; 2]) -> f64 {
+        self.earth(at)[1]
+    }
+
+    /// Longitude and latitude in degrees of x and y of the world.
+    pub fn earth(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let (kind, true_latitudes, middle, origin) = match *self {
+            Self::Degrees([along_x, along_y]) => return [x / along_x, y / along_y],
+            Self::MovedPole {
+                pole,
+                degree_lengths: [along_x, along_y],
+                ..
+            } => return pole.earth_from_grid([x / along_x, y / along_y]),
+            Self::Map {
+                kind,
+                true_latitudes,
+                longitude,
+                origin,
+            } => (kind, true_latitudes, longitude, origin),
         };
         let [x, y] = [x + origin[0], y + origin[1]];
         let [p1, p2] = true_latitudes.map(f64::to_radians);
         // The latitude of tan(45 + p / 2).
         let of_tan = |tan: f64| 2.0 * tan.atan() - std::f64::consts::FRAC_PI_2;
-        let latitude = match kind {
-            MapKind::Mercator => of_tan((y / (RADIUS * p1.cos())).exp()),
+        let [l, p] = match kind {
+            MapKind::Mercator => {
+                let scale = RADIUS * p1.cos();
+                [x / scale, of_tan((y / scale).exp())]
+            }
             MapKind::Lambert => {
                 let n = cone(p1, p2);
                 let r = x.hypot(y);
                 let ratio = RADIUS * p1.cos() / (n.abs() * r);
-                of_tan(half_tan(p1) * ratio.powf(1.0 / n))
+                // r has the sign of n.
+                let l = (n.signum() * x).atan2(-n.signum() * y) / n;
+                [l, of_tan(half_tan(p1) * ratio.powf(1.0 / n))]
             }
             MapKind::PolarStereographic => {
                 let side = p1.signum();
                 let far = x.hypot(y) / (RADIUS * (1.0 + p1.abs().sin()));
-                side * (std::f64::consts::FRAC_PI_2 - 2.0 * far.atan())
+                let p = side * (std::f64::consts::FRAC_PI_2 - 2.0 * far.atan());
+                [x.atan2(-side * y), p]
             }
-            MapKind::LatitudeLongitude | MapKind::Curvilinear => f64::NAN,
+            MapKind::LatitudeLongitude | MapKind::Curvilinear => [f64::NAN; 2],
         };
-        latitude.to_degrees()
+        [middle + l.to_degrees(), p.to_degrees()]
     }
 
     /// x and y of a longitude and a latitude in degrees, world; `None` where the map has no such place.
@@ -450,7 +472,9 @@ mod tests {
             let found = projection
                 .place([longitude + 7.0, latitude + 5.0])
                 .expect("a place");
-            assert!((projection.latitude(found) - latitude - 5.0).abs() < 1e-9);
+            let back = projection.earth(found);
+            assert!((back[1] - latitude - 5.0).abs() < 1e-9);
+            assert!((wrapped(longitude, back[0]) - 7.0).abs() < 1e-9, "{kind:?}");
             for k in [0, 1] {
                 // A tenth of a millimetre.
                 assert!((found[k] - wanted[k]).abs() < 1e-7, "{kind:?} {found:?}");

@@ -5,7 +5,7 @@ use crate::cli::Error;
 use crate::cli::flags::{ClassificationFlags, Component, Plan, SceneFlags};
 use crate::offscreen::check_geometry;
 use crate::shaders::MAX_CHANNELS;
-use crate::technique::{Mode, Settings, Technique};
+use crate::technique::{Filter, Mode, Settings, Technique};
 use crate::volume::Header;
 /// Which of the numbers of a voxel are drawn, and what a person should know of it.
 pub(super) fn plan(scene: &SceneFlags, header: &Header) -> Result<(Plan, Option<String>), Error> {
@@ -87,6 +87,19 @@ fn check_lines(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
             "--flow stream draws its lines, --barbs its barbs",
         ));
     }
+    let word = scene.flow.word_without_lines();
+    let word = word.or_else(|| {
+        scene
+            .flow_style
+            .word()
+            .filter(|_| scene.flow.flow.is_none())
+    });
+    if let Some(word) = word {
+        return Err(Error::usage(
+            format!("{word} is of lines along the wind, and none are drawn"),
+            "--flow stream draws them, and so do --show wind and --show both",
+        ));
+    }
     if !scene.has_lines() {
         return match scene.flow_style.hide_volume {
             true => Err(Error::usage(
@@ -97,6 +110,17 @@ fn check_lines(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
         };
     }
     scene.flow.check_words()?;
+    let [_, height] = scene.picture.extent_pixels()?;
+    scene.flow_style.check(height)?;
+    if scene.flow.flow.is_some() && settings.filter != Filter::Linear {
+        return Err(Error::usage(
+            format!(
+                "--flow with --filter {}: lines follow the linear field",
+                settings.filter
+            ),
+            "leave out --filter",
+        ));
+    }
     let word = scene.geometry_word().unwrap_or("--points-as spheres");
     let refused =
         |problem: &str, hint: &str| Err(Error::usage(format!("{word} {problem}"), hint.to_owned()));

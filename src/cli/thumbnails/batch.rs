@@ -252,10 +252,10 @@ impl Batch<'_> {
             } = drawn;
             renderer.change(&shown.classification, settings);
             let mut picture = renderer.draw(camera)?.picture;
-            let reason = why_empty(&picture, &shown.volume, reasoned, camera, settings);
+            let reason = why_empty(&picture, false, &shown.volume, reasoned, camera, settings);
             let view = wanted.view.map(|view| format!("--view {}: ", view.name()));
             let view = view.unwrap_or_default();
-            let empty = reason.map(|reason| format!("{view}the picture is empty: {reason}"));
+            let empty = reason.map(|reason| format!("{view}{reason}"));
             let idle = scene.idle().into_iter();
             let notes = idle.chain(empty).chain(annotation_note.clone());
             let framed = framed.iter().map(|note| format!("{view}{note}"));

@@ -164,6 +164,7 @@ enum Told {
         format: Word,
         what: String,
     },
+    Unstructured,
     Limit {
         what: String,
         wanted_bytes: u64,
@@ -258,7 +259,7 @@ pub fn take_piece(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::volume::{Channel, ComponentKind, Format, Rescale, Series};
+    use crate::volume::{Channel, ComponentKind, Format, Heights, Rescale, Series};
     use glam::DAffine3;
 
     #[test]
@@ -284,6 +285,7 @@ mod tests {
             is_labels: true,
             is_earth: true,
             degree_lengths: [Some(71.3), None],
+            heights: Heights::Levels,
             levels: 4,
             time_names: vec!["now".to_owned()],
             series: vec![Series {

@@ -27,10 +27,12 @@ pub struct EvenLines {
     pub stretch: f64,
     /// No more lines than these.
     pub most: usize,
+    /// No line more where they have so many vertices together.
+    pub most_vertices: usize,
 }
 
 impl EvenLines {
-    /// A 24th of the box's diagonal apart, at most 2000 lines.
+    /// A 24th of the box's diagonal apart, at most 2000 lines, of a thousand vertices in the mean.
     pub fn of(grid: &Grid, stretch: f64) -> Self {
         let mut seen = *grid;
         seen.world_from_voxel =
@@ -39,6 +41,7 @@ impl EvenLines {
             distance: seen.diagonal() / 24.0,
             stretch,
             most: 2000,
+            most_vertices: 2_000_000,
         }
     }
 }
@@ -47,7 +50,7 @@ impl EvenLines {
 const BEYOND: f64 = 1.0001;
 
 /// Evenly spaced stream lines of the field as it is at `time`, in the box of a grid. Lines that are shorter than the distance
-/// are left out, but for closed ones.
+/// are left out, but for closed ones. `told` hears of each line, and how many there are with it.
 pub fn even_stream_lines(
     field: &impl VectorField,
     time: f64,
@@ -55,12 +58,14 @@ pub fn even_stream_lines(
     spacing: EvenLines,
     direction: Direction,
     limits: &Limits,
+    told: &mut dyn FnMut(&Line, usize),
 ) -> Vec<Line> {
     let mut crowd = Crowd::new(spacing.distance, spacing.stretch);
     let mut offered = VecDeque::from([grid.center()]);
     let mut on_grid = grid_seeds(grid, counts(grid, &spacing)).into_iter();
     let mut lines: Vec<Line> = Vec::new();
-    while lines.len() < spacing.most {
+    let mut vertices = 0;
+    while lines.len() < spacing.most && vertices < spacing.most_vertices {
         let Some(seed) = offered.pop_front().or_else(|| on_grid.next()) else {
             break;
         };
@@ -77,6 +82,8 @@ pub fn even_stream_lines(
             crowd.add(vertex.place);
         }
         offer(&line, &crowd, spacing.distance, &mut offered);
+        vertices += line.vertices.len();
+        told(&line, lines.len() + 1);
         lines.push(line);
     }
     lines

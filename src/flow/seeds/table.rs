@@ -1,8 +1,8 @@
 //! Seeds of a text file: a line a seed.
 //!
 //! ```text
-//! x,y,z[,t]                        world, seconds
-//! lon,lat,height|pressure[,t]      degrees, m or hPa; a first line of these names says so
+//! x,y,z[,t]                           world, seconds
+//! lon,lat,height|pressure|level[,t]   degrees, m, hPa or a level from 0 at the lowest; a first line of these names says so
 //! ```
 
 use glam::DVec3;
@@ -25,6 +25,8 @@ pub enum SeedPlace {
     Height,
     /// Degrees of longitude and of latitude, and a pressure in hPa.
     Pressure,
+    /// Degrees of longitude and of latitude, and the number of a level, 0 the lowest.
+    Level,
 }
 
 /// The seeds of a file.
@@ -59,7 +61,7 @@ pub enum TableError {
     },
     /// The first line has other names.
     #[error(
-        "line 1: x,y,z or lon,lat,height or lon,lat,pressure wanted, each with or without t, found {0:?}"
+        "line 1: x,y,z or lon,lat,height or lon,lat,pressure or lon,lat,level wanted, each with or without t, found {0:?}"
     )]
     Names(String),
     /// There is no seed.
@@ -131,6 +133,7 @@ fn names(line: &str) -> Result<(SeedPlace, usize), TableError> {
         ["x", "y", "z"] => SeedPlace::World,
         ["lon" | "longitude", "lat" | "latitude", "height"] => SeedPlace::Height,
         ["lon" | "longitude", "lat" | "latitude", "pressure"] => SeedPlace::Pressure,
+        ["lon" | "longitude", "lat" | "latitude", "level"] => SeedPlace::Level,
         _ => return Err(TableError::Names(line.chars().take(80).collect())),
     };
     Ok((are, count))
@@ -160,6 +163,10 @@ mod tests {
         let timed = SeedTable::of("Lon,Lat,Pressure,T\n-90,25,850,3600\n").expect("seeds");
         assert_eq!(timed.are, SeedPlace::Pressure);
         assert_eq!(timed.seeds[0].time, Some(3600.0));
+        assert_eq!(
+            SeedTable::of("lon,lat,level\n1,2,3").map(|t| t.are),
+            Ok(SeedPlace::Level)
+        );
         assert_eq!(
             SeedTable::of("x,y,z,t\n1,2,3,4").map(|t| t.are),
             Ok(SeedPlace::World)

@@ -8,7 +8,7 @@ mod csv;
 mod tubes;
 mod vtp;
 
-pub use csv::{Geography, write_csv};
+pub use csv::{Geography, Upright, write_csv};
 pub use tubes::tubes;
 pub use vtp::write_vtp;
 

@@ -1,6 +1,6 @@
 //! Files of lines read back, and tubes as solids.
 
-use super::{Geography, LineValues, tubes, write_csv, write_vtp};
+use super::{Geography, LineValues, Upright, tubes, write_csv, write_vtp};
 use crate::flow::{End, Line, Vertex};
 use glam::{DVec3, Vec3, dvec3};
 
@@ -29,8 +29,8 @@ fn lines() -> Vec<Line> {
 #[test]
 fn text_has_every_digit_and_a_number_for_each_piece() {
     let geography = Geography {
-        degrees: Some([2.0, 4.0]),
-        height: Some(1000.0),
+        degrees: Some(&|[x, y]| [x / 2.0, y / 4.0]),
+        upright: Some(Upright::Height(1000.0)),
     };
     let mut out = Vec::new();
     let values = LineValues::speeds(&lines());
@@ -63,6 +63,22 @@ fn text_has_every_digit_and_a_number_for_each_piece() {
         text.lines().nth(1).is_some_and(|row| row.contains(",,,")),
         "{text}"
     );
+}
+
+#[test]
+fn levels_without_heights_have_their_numbers_and_no_metres() {
+    let geography = Geography {
+        degrees: None,
+        upright: Some(Upright::Level(2.0)),
+    };
+    let mut out = Vec::new();
+    let values = LineValues::speeds(&lines());
+    write_csv(&lines(), &values, geography, &mut out).expect("memory");
+    let text = String::from_utf8(out).expect("text");
+    assert!(text.starts_with("line,time,x,y,z,lon,lat,level,value\n"));
+    let first = text.lines().nth(1).expect("a vertex");
+    let level = first.split(',').nth(7).and_then(|n| n.parse().ok());
+    assert_eq!(level, Some(0.5 * vertex(8.0).place.z));
 }
 
 /// The numbers of an array, by its offset in the markup.

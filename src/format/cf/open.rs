@@ -58,7 +58,7 @@ fn open_checked(
     header.degree_lengths = place.degrees;
     header.map = map;
     header.derived = available(arrays.as_ref());
-    header.heights_are_pressures = place.are_pressures;
+    header.heights = place.heights;
     header.notes = notes;
     header.notes.extend(place.notes);
     let even = place.uneven.iter().all(Option::is_none);

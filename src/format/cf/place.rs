@@ -12,12 +12,11 @@ use super::knots::{is_even, is_monotone, step};
 use super::units::Measure;
 use crate::format::earth::{GRAVITY, WIDEST_LATITUDE, kilometres_of_degree, standard_height};
 use crate::format::geometry::world_from_voxel;
+use crate::volume::Heights;
 use glam::{DAffine3, DVec3};
 
 /// Levels that are only numbers are spread over this part of the longer horizontal side.
 const HEIGHT_OF_NUMBERS: f64 = 0.25;
-
-const PRESSURES_LIE_AT: &str = "pressures lie at their heights in the standard atmosphere";
 
 /// The points of a grid in the world.
 #[derive(Debug)]
@@ -30,8 +29,8 @@ pub(super) struct Place {
     pub is_earth: bool,
     /// Kilometres of a degree along x and y, where points there are given in degrees.
     pub degrees: [Option<f64>; 2],
-    /// True where heights are those of pressures in the standard atmosphere.
-    pub are_pressures: bool,
+    /// What places along z stand for.
+    pub heights: Heights,
     pub notes: Vec<String>,
 }
 
@@ -47,12 +46,11 @@ pub(super) fn place(dims: [u32; 3], coordinates: &[Option<Coordinate>; 3]) -> Op
         let points = as_they_stand(dims, coordinates, &mut notes);
         return from_points(dims, points, false, notes);
     }
-    let (points, degrees) = on_earth(dims, x, y, z, &mut notes);
+    let (points, degrees, heights) = on_earth(dims, x, y, z, &mut notes);
     let spanned = from_points(dims, points, true, notes)?;
-    let are_pressures = spanned.notes.iter().any(|note| note == PRESSURES_LIE_AT);
     Some(Place {
         degrees,
-        are_pressures,
+        heights,
         ..spanned
     })
 }
@@ -93,7 +91,7 @@ pub(super) fn from_points(
         uneven,
         is_earth,
         degrees: [None; 2],
-        are_pressures: false,
+        heights: Heights::Lengths,
         notes,
     })
 }
@@ -104,7 +102,7 @@ fn on_earth(
     y: Option<&Coordinate>,
     z: Option<&Coordinate>,
     notes: &mut Vec<String>,
-) -> ([Vec<f64>; 3], [Option<f64>; 2]) {
+) -> ([Vec<f64>; 3], [Option<f64>; 2], Heights) {
     let degrees = |c: Option<&Coordinate>| c.is_some_and(|c| c.measure == Measure::Degrees);
     let middle = match y {
         Some(y) if degrees(Some(y)) => {
@@ -156,11 +154,17 @@ fn on_earth(
     let east = east.unwrap_or_else(|| evenly(nx, other));
     let north = north.unwrap_or_else(|| evenly(ny, other));
     let width = extent(&east).max(extent(&north));
-    ([east, north, heights(nz, z, width, notes)], lengths)
+    let (up, are) = heights(nz, z, width, notes);
+    ([east, north, up], lengths, are)
 }
 
-/// Heights in km; levels that are only numbers are spread over a part of `width`.
-fn heights(count: u32, z: Option<&Coordinate>, width: f64, notes: &mut Vec<String>) -> Vec<f64> {
+/// Heights in km, and what they stand for; levels that are only numbers are spread over a part of `width`.
+fn heights(
+    count: u32,
+    z: Option<&Coordinate>,
+    width: f64,
+    notes: &mut Vec<String>,
+) -> (Vec<f64>, Heights) {
     let sign = |z: &Coordinate| if z.is_up { 1.0 } else { -1.0 };
     let known: Option<Vec<f64>> = z.and_then(|z| match z.measure {
         Measure::Length(metres) => {
@@ -179,9 +183,10 @@ fn heights(count: u32, z: Option<&Coordinate>, width: f64, notes: &mut Vec<Strin
     });
     if let Some(points) = known.filter(|points| is_monotone(points)) {
         if z.is_some_and(|z| matches!(z.measure, Measure::Pressure(_))) && count > 1 {
-            notes.push(PRESSURES_LIE_AT.to_owned());
+            notes.push("pressures lie at their heights in the standard atmosphere".to_owned());
+            return (points, Heights::Pressures);
         }
-        return points;
+        return (points, Heights::Lengths);
     }
     let gaps = f64::from(count.saturating_sub(1).max(1));
     let step = HEIGHT_OF_NUMBERS * width / gaps;
@@ -203,10 +208,15 @@ fn heights(count: u32, z: Option<&Coordinate>, width: f64, notes: &mut Vec<Strin
         ));
     }
     // The lowest lies at the height 0, where the ground of maps is.
-    match is_rising {
-        true => evenly(count, step),
-        false => evenly(count, step).into_iter().rev().collect(),
+    let mut points = evenly(count, step);
+    if !is_rising {
+        points.reverse();
     }
+    let are = match count > 1 {
+        true => Heights::Levels,
+        false => Heights::Lengths,
+    };
+    (points, are)
 }
 
 /// Coordinates that are in no way of the Earth: one unit for all three, or metres, or numbers as they are.

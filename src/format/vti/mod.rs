@@ -129,6 +129,7 @@ fn image(document: &Document) -> Result<&Element, Problem> {
         "RectilinearGrid" => {
             return Err(unsupported(VTI, "RectilinearGrid (unequal distances)"));
         }
+        "UnstructuredGrid" | "PUnstructuredGrid" => return Err(Problem::Unstructured),
         text => {
             let what = format!("the data set `{}`, not ImageData,", escape(text));
             return Err(unsupported(VTI, what));

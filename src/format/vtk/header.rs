@@ -124,9 +124,11 @@ fn first_lines(scan: &mut Scan) -> Result<(), Problem> {
     word = scan.after("DATASET")?.to_ascii_uppercase();
     match word.as_str() {
         "STRUCTURED_POINTS" => Ok(()),
-        "RECTILINEAR_GRID" | "STRUCTURED_GRID" | "UNSTRUCTURED_GRID" | "POLYDATA" => Err(
-            unsupported(VTK, format!("the data set {word}, not STRUCTURED_POINTS,")),
-        ),
+        "UNSTRUCTURED_GRID" => Err(Problem::Unstructured),
+        "RECTILINEAR_GRID" | "STRUCTURED_GRID" | "POLYDATA" => Err(unsupported(
+            VTK,
+            format!("the data set {word}, not STRUCTURED_POINTS,"),
+        )),
         _ => Err(invalid(VTK, "DATASET", "STRUCTURED_POINTS", &word)),
     }
 }

@@ -105,6 +105,9 @@ impl Layout {
         if options.format == VolumeFormat::Npy {
             lost.push("where the voxels lie");
         }
+        if header.is_earth && !is_bricks {
+            lost.push("that the world is a piece of the Earth, its degrees and its map");
+        }
         if header.is_labels && !is_nifti && !is_bricks {
             lost.push("that the values are labels");
         }

@@ -24,6 +24,7 @@ use crate::cli::{
 };
 use crate::flow::Absence;
 use crate::geometry::{Corner, Geometry, Vertex};
+use crate::volume::Heights;
 use glam::DVec3;
 use symbol::{Feathers, KNOT, axes};
 
@@ -71,13 +72,15 @@ pub(super) struct Request<'a> {
     pub color: [f32; 3],
     pub casing: Option<[f32; 3]>,
     pub of_film: Option<FilmTime<'a>>,
+    /// What was said of the file.
+    pub said: &'a [String],
 }
 
 impl Barbs {
-    /// Reads the wind, whose notes `of_file` hears.
+    /// Reads the wind, of which `of_wind` hears what was not said of it.
     pub fn read(
         request: &Request<'_>,
-        of_file: &Progress,
+        of_wind: &Progress,
         progress: &Progress,
     ) -> Result<Self, Error> {
         let variables = Variables {
@@ -86,7 +89,8 @@ impl Barbs {
         };
         let at = request.of_film.map(|film| film.time);
         let names = request.wind.as_ref();
-        let wind = wind::read(&variables, names, FlowWord::Stream, at, of_file)?;
+        let said = Some(request.said);
+        let wind = wind::read(&variables, names, FlowWord::Stream, at, said, of_wind)?;
         let time = at.map_or(0.0, f64::fract);
         let place = request.words.place;
         let height = place.unwrap_or(LevelOrHeight::Level(0));
@@ -278,8 +282,8 @@ fn at_words(
         return format!("the places of {} and {}", names.east, names.north);
     }
     let metres = header
-        .length_metres
-        .filter(|_| !header.heights_are_pressures);
+        .height_metres()
+        .filter(|_| header.heights != Heights::Pressures);
     let level = match place {
         None => "the lowest level".to_owned(),
         Some(LevelOrHeight::Level(level)) => LevelOrHeight::Level(level).words(),

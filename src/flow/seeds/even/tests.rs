@@ -24,6 +24,27 @@ fn abc(flat: f64) -> (GridField, Grid) {
     (field, grid)
 }
 
+/// Lines in both directions, of which each is told.
+fn even(field: &GridField, grid: &Grid, spacing: EvenLines) -> Vec<Line> {
+    let limits = Limits::default();
+    let mut told = Vec::new();
+    let mut tell = |line: &Line, count: usize| {
+        assert_eq!(count, told.len() + 1);
+        told.push(line.clone());
+    };
+    let lines = even_stream_lines(
+        field,
+        0.0,
+        grid,
+        spacing,
+        Direction::Both,
+        &limits,
+        &mut tell,
+    );
+    assert!(told == lines);
+    lines
+}
+
 /// The distance of two chords, to the ends of one of them.
 fn distance(p: DVec3, [a, b]: [DVec3; 2]) -> f64 {
     let along = b - a;
@@ -51,9 +72,9 @@ fn lines_stay_half_the_distance_apart_and_leave_no_gap_in_the_world_as_it_is_see
             distance: separation,
             stretch,
             most: 2000,
+            most_vertices: usize::MAX,
         };
-        let limits = Limits::default();
-        let lines = even_stream_lines(&field, 0.0, &grid, spacing, Direction::Both, &limits);
+        let lines = even(&field, &grid, spacing);
         assert!((60..300).contains(&lines.len()), "{} lines", lines.len());
         assert!(lines.iter().enumerate().all(|(i, line)| line.seed == i));
         let ways: Vec<_> = lines.iter().map(|line| seen(line, stretch)).collect();
@@ -98,9 +119,25 @@ fn no_more_lines_come_than_are_wanted_and_the_same_each_time() {
         most: 5,
         ..EvenLines::of(&grid, 1.0)
     };
-    let make = || even_stream_lines(&field, 0.0, &grid, few, Direction::Both, &Limits::default());
+    let make = || even(&field, &grid, few);
     let lines = make();
     assert_eq!(lines.len(), 5);
+    // Nor any more once these have so many vertices.
+    let counts = lines.iter().map(|line| line.vertices.len());
+    let counts: Vec<usize> = counts.collect();
+    for most_vertices in [1, counts[0], counts[0] + 1, counts[..3].iter().sum()] {
+        let some = even(
+            &field,
+            &grid,
+            EvenLines {
+                most_vertices,
+                ..few
+            },
+        );
+        let made: usize = counts[..some.len()].iter().sum();
+        let before = made - counts[some.len() - 1];
+        assert!(some == lines[..some.len()] && made >= most_vertices && before < most_vertices);
+    }
     assert!(lines == make());
     assert!((few.distance - 3f64.sqrt() / 24.0).abs() < 1e-12);
 }

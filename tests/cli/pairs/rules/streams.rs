@@ -1,4 +1,4 @@
-//! Volumes brick by brick, and the CPU references.
+//! Volumes brick by brick, the CPU references, and lines.
 
 use super::{Rule, no_meaning, not_built, of};
 
@@ -45,5 +45,13 @@ pub const RULES: &[Rule] = &[
     not_built(
         "--stream is not for --device reference",
         "the CPU reference follows one pixel after another through the whole volume: each brick would be read once a row of tiles",
+    ),
+    // Lines.
+    of(
+        &["lines of the wind"],
+        no_meaning(
+            "lines follow the linear field",
+            "lines follow the linear field: a volume by another filter beside them would be another field",
+        ),
     ),
 ];
