@@ -301,9 +301,10 @@ fn every_command_of_the_page_of_annotation_runs() {
 #[test]
 fn every_command_of_the_page_of_weather_runs() {
     let (folder, _, lines) = run_page("docs/weather.md");
-    assert_eq!(lines, 13);
+    assert_eq!(lines, 14);
     let pictures = [
         "vapor.png",
+        "abc.png",
         "comets.png",
         "wind.png",
         "barbs.png",
