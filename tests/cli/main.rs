@@ -67,6 +67,7 @@ mod presets;
 mod real;
 mod sampled;
 mod scattering;
+mod scenes;
 mod section;
 mod section_at;
 mod sheet;
