@@ -301,10 +301,11 @@ fn every_command_of_the_page_of_annotation_runs() {
 #[test]
 fn every_command_of_the_page_of_weather_runs() {
     let (folder, _, lines) = run_page("docs/weather.md");
-    assert_eq!(lines, 15);
+    assert_eq!(lines, 16);
     let pictures = [
         "particles.png",
         "vapor.png",
+        "abc.png",
         "comets.png",
         "wind.png",
         "barbs.png",

@@ -68,6 +68,7 @@ mod presets;
 mod real;
 mod sampled;
 mod scattering;
+mod scenes;
 mod section;
 mod section_at;
 mod sheet;

@@ -5,11 +5,13 @@
 //! Fault::State     what is recorded and made is changed on its way to the driver: blend factors, samplers, viewports, draws
 //! Fault::Shader    a shader is another: its WGSL with one text in place of another, compiled anew
 //! ```
+#![allow(dead_code, unused_imports, reason = "each test file uses its part")]
 
 mod answers;
 mod shaders;
 mod states;
 mod table;
+mod table_geometry;
 mod table_probes;
 mod table_scatter;
 mod transfers;
@@ -22,6 +24,7 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 pub use answers::ANSWERS;
 pub use states::State;
 pub use table::{CLAMPED_FAULTS, FAULTS};
+pub use table_geometry::{CONE_FAULTS, END_FAULTS};
 pub use table_probes::PROBE_FAULTS;
 pub use table_scatter::SCATTER_FAULTS;
 

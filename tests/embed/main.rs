@@ -1,6 +1,8 @@
 //! `stratavox::embed` in a host of its own: the frames that it records are the offscreen pictures.
 #![cfg(feature = "conformance")]
 
+#[path = "../driver_faults/mod.rs"]
+mod driver_faults;
 #[path = "../embed_shared/mod.rs"]
 mod embed_shared;
 #[allow(dead_code, reason = "its random numbers alone are wanted")]

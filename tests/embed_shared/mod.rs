@@ -58,6 +58,15 @@ impl Host {
         unsafe { Self::with(true, Caps::UNLIMITED, loader::guarded) }
     }
 
+    /// A host that gives away a `vkGetInstanceProcAddr` which is not the loader's.
+    ///
+    /// # Safety
+    /// It gives functions that do what Vulkan says.
+    pub unsafe fn through(get_instance_proc_addr: vk::PFN_vkGetInstanceProcAddr) -> Self {
+        // SAFETY: the caller's promise.
+        unsafe { Self::with(false, Caps::UNLIMITED, get_instance_proc_addr) }
+    }
+
     /// The same, and we may submit to its queue.
     pub fn that_lets_us_submit() -> Self {
         let real = loader::entry().static_fn().get_instance_proc_addr;

@@ -1,6 +1,8 @@
 //! Pictures against exact answers: closed forms, and the CPU reference that says what each shader computes.
 #![cfg(feature = "conformance")]
 
+#[path = "../driver_faults/mod.rs"]
+mod driver_faults;
 #[path = "../embed_shared/mod.rs"]
 mod embed_shared;
 #[path = "../shared/mod.rs"]

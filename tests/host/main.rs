@@ -150,6 +150,7 @@ mod volume_runs;
 mod volume_sample;
 mod volume_statistics;
 mod voxel_sets;
+mod weather;
 
 #[cfg(feature = "files")]
 #[global_allocator]

@@ -351,7 +351,7 @@ fn a_wrong_word_is_answered_with_the_right_ones() {
     let cases = [
         (
             "phantom:heart",
-            "wanted one of sphere, gauss, marschner-lobb, fog, shells, storm, cells, head, found `heart`",
+            "wanted one of sphere, gauss, marschner-lobb, fog, shells, storm, flow, cells, head, found `heart`",
         ),
         ("phantom:", "found ``"),
         (
@@ -373,6 +373,10 @@ fn a_wrong_word_is_answered_with_the_right_ones() {
             "wanted one of cloud, vapor, temperature, u, v, w, found `hail`",
         ),
         ("phantom:storm,times=0", "`times`"),
+        (
+            "phantom:flow,kind=jet",
+            "wanted one of helix, saddle, taylor-green, abc, found `jet`",
+        ),
         ("phantom:sphere,edge=-1", "a length of 0 or more"),
         ("phantom:sphere,edge=NaN", "a length of 0 or more"),
         ("phantom:fog,profile=\u{1b}[31m", "found `\\u{1b}[31m`"),

@@ -226,31 +226,6 @@ fn a_smooth_field_of_600_points_is_as_near_as_the_table_says() {
 }
 
 #[test]
-fn weights_of_idw_are_those_of_the_formula() {
-    let places = places(40);
-    let points = points(&places, smooth);
-    let field = field(&points, Method::Idw);
-    for query in queries().take(50) {
-        let mut near: Vec<(f64, f64)> = places
-            .iter()
-            .zip(points.values())
-            .map(|(p, &value)| (p.distance(query), f64::from(value)))
-            .collect();
-        near.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let radius = near[16].0;
-        let weight = |d: f64| ((radius - d) / (radius * d)).powi(2);
-        let sum: f64 = near[..16].iter().map(|(d, value)| weight(*d) * value).sum();
-        let weights: f64 = near[..16].iter().map(|(d, _)| weight(*d)).sum();
-        let found = field.at(query).expect("near");
-        assert!(
-            (found - sum / weights).abs() < 1e-12,
-            "{found} {}",
-            sum / weights
-        );
-    }
-}
-
-#[test]
 fn the_integral_of_a_density_is_the_weight_of_the_points() {
     let places = places(200);
     let weights: Vec<f32> = (0..200).map(|i| (i % 5) as f32).collect();

@@ -22,7 +22,7 @@ use std::{
 #[serde(default, deny_unknown_fields)]
 pub struct InputFlags {
     /// A volume file, a file of scattered points, a folder of slices, - for a file on the standard input, or phantom:NAME[,n=256][,type=u8|u16|f32] with NAME of sphere, gauss,
-    /// marschner-lobb, head, fog, shells, storm, cells
+    /// marschner-lobb, head, fog, shells, storm, flow, cells
     #[arg(value_name = "INPUT")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub path: Option<String>,

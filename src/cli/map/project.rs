@@ -362,6 +362,58 @@ mod tests {
         assert_eq!(degrees.latitude([7.0, -222.0]), -2.0);
     }
 
+    /// A map with other numbers than a file's is not the one of PROJ (the first of `maps_are_those_of_proj`).
+    #[test]
+    fn wrong_numbers_of_a_map_are_seen() {
+        let off = |change: fn(&mut MapProjection), radius: f64| {
+            let mut map = MapProjection {
+                kind: MapKind::Lambert,
+                true_latitudes: [Some(30.0), Some(60.0)],
+                standard_longitude: Some(-97.0),
+                center: Some([40.0, -90.0]),
+                corner: None,
+                pole: None,
+            };
+            change(&mut map);
+            let projection = Projection::of_map(&map).expect("a map");
+            let [x, y] = projection.place([-83.0, 45.0]).expect("a place");
+            let wanted = [479.750_441_100_790_06, 605.185_836_444_020_3];
+            let part = radius / RADIUS;
+            (part * x - wanted[0])
+                .abs()
+                .max((part * y - wanted[1]).abs())
+        };
+        // Lengths go with the radius.
+        assert!(off(|_| (), RADIUS) < 1e-7);
+        // Lambert's cone is the same with its parallels swapped.
+        assert!(off(|map| map.true_latitudes.reverse(), RADIUS) < 1e-7);
+        type Fault = fn(&mut MapProjection);
+        let faults: [(&str, Fault, f64); 5] = [
+            ("the radius of GRIB files", |_| (), 6371.229),
+            ("one parallel", |map| map.true_latitudes[1] = None, RADIUS),
+            (
+                "the sign of the longitude",
+                |map| map.standard_longitude = Some(97.0),
+                RADIUS,
+            ),
+            (
+                "the other pole",
+                |map| map.true_latitudes = [Some(-30.0), Some(-60.0)],
+                RADIUS,
+            ),
+            (
+                "Mercator for Lambert",
+                |map| map.kind = MapKind::Mercator,
+                RADIUS,
+            ),
+        ];
+        for (what, change, radius) in faults {
+            let off = off(change, radius);
+            println!("{what}: {off:.2e} km");
+            assert!(off > 1e-3, "{what} is off by {off} km");
+        }
+    }
+
     #[test]
     fn lines_are_straight_in_degrees_and_end_at_the_edge_of_the_map() {
         let projection = |kind, true_latitudes: [f64; 2]| {

@@ -5,13 +5,15 @@
 //! phantom:sphere[,edge=LENGTH]               width of the soft edge; 0 for a hard one; default one voxel
 //! phantom:fog[,profile=exponential|linear]
 //! phantom:storm[,variable=NAME][,times=8]    hours 0 to 24, g/kg, K and m/s, on the Earth but nowhere on the globe
+//! phantom:flow[,kind=helix|saddle|taylor-green|abc]      velocities whose lines are known, in m/s
 //! phantom:cells                             three dyes of a microscope: nuclei, membranes, mitochondria
 //! ```
 //!
 //! `n` is the number of voxels along x; voxels are cubes. World is RAS+ in millimetres (`marschner-lobb`:
-//! the unit of its paper; `storm`: x east, y north, z up in kilometres).
+//! the unit of its paper; `flow`: metres; `storm`: x east, y north, z up in kilometres).
 
 mod cells;
+mod flow;
 mod head;
 mod noise;
 mod spec;
@@ -208,6 +210,17 @@ fn build(text: &str) -> Result<Phantom, Problem> {
             design.length_metres = Some(1e3);
             Box::new(move |pick| Box::new(storm::Storm::new(variable, pick.time, times)))
         }
+        "flow" => {
+            known.push("kind");
+            let kind = spec.choice("kind", &flow::KINDS)?;
+            meaning = ComponentKind::Vector;
+            design = Design {
+                value_range: flow::RANGE,
+                length_metres: Some(1.0),
+                ..Design::cube(flow::HALF_SIDE)
+            };
+            Box::new(move |pick| Box::new(flow::Flow::new(kind, pick.component)))
+        }
         "cells" => {
             meaning = ComponentKind::Channels(cells::channels());
             design.default_type = VoxelType::U8;
@@ -238,7 +251,12 @@ fn build(text: &str) -> Result<Phantom, Problem> {
     };
     let components = match &meaning {
         ComponentKind::Channels(channels) => channels.len() as u32,
+        ComponentKind::Vector => 3,
         _ => 1,
+    };
+    let unit = match meaning {
+        ComponentKind::Vector => Some(flow::UNIT.to_owned()),
+        _ => storm.map(|variable| variable.unit().to_owned()),
     };
     let header = Header {
         components,
@@ -249,7 +267,7 @@ fn build(text: &str) -> Result<Phantom, Problem> {
         is_patient: design.is_patient,
         length_metres: design.length_metres,
         is_earth: storm.is_some(),
-        unit: storm.map(|variable| variable.unit().to_owned()),
+        unit,
         standard_name: storm.and_then(|v| v.standard_name().map(str::to_owned)),
         long_name: storm.map(|variable| variable.long_name().to_owned()),
         time_names: storm.map_or(Vec::new(), |_| storm::time_names(times)),

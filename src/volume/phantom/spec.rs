@@ -4,13 +4,14 @@ use crate::volume::{Problem, VoxelType};
 use std::ops::RangeInclusive;
 
 /// Every phantom.
-pub const NAMES: [&str; 8] = [
+pub const NAMES: [&str; 9] = [
     "sphere",
     "gauss",
     "marschner-lobb",
     "fog",
     "shells",
     "storm",
+    "flow",
     "cells",
     "head",
 ];
