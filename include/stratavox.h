@@ -484,6 +484,14 @@ typedef struct sv_opacity_point {
     double opacity;
 } sv_opacity_point;
 
+// What matter does to light at a value, for SV_TECHNIQUE_PATHTRACE.
+typedef struct sv_medium_point {
+    // After rescale.
+    double value;
+    // Linear numbers of red, green and blue, none under 0.
+    double linear[3];
+} sv_medium_point;
+
 // A transfer function by control points in order of their values, constant beyond the ends.
 typedef struct sv_transfer_function_desc {
     // `sizeof(sv_transfer_function_desc)`.
@@ -502,6 +510,22 @@ typedef struct sv_transfer_function_desc {
     double reference_length;
     // Not 0: from one point to the next the value of the first holds. Else it goes straight.
     uint32_t is_stepped;
+    // 0.
+    uint32_t reserved;
+    // Extinction per world length in place of opacities, which are none then: what scatters no light takes the opacity that
+    // it has over `reference_length`, 0 there being the length behind which half of the light is left in the densest matter.
+    // None: that of `opacities`.
+    const struct sv_medium_point *extinctions;
+    // How many there are, at most 4096.
+    uint64_t extinction_count;
+    // The part of light that is scattered and not absorbed, 0 to 1. None: the colours in linear light.
+    const struct sv_medium_point *albedos;
+    // How many there are, at most 4096.
+    uint64_t albedo_count;
+    // Light that matter sends out, radiance per world length. None: it sends out none.
+    const struct sv_medium_point *emissions;
+    // How many there are, at most 4096.
+    uint64_t emission_count;
 } sv_transfer_function_desc;
 
 // A transfer function. 0 is a ramp of greys over the volume's range.

@@ -7,7 +7,7 @@ use super::status::{Failure, guard, number, sv_diagnostic, sv_status};
 use super::structure::{self, Versioned};
 use crate::technique::Mode;
 use crate::transfer::{
-    Classified, ColorPoint, Interpolation, OpacityPoint, TransferFunction, Window,
+    Classified, ColorPoint, Interpolation, MediumPoint, OpacityPoint, TransferFunction, Window,
 };
 use std::ffi::c_void;
 use std::sync::Arc;
@@ -35,6 +35,16 @@ pub struct sv_opacity_point {
     pub opacity: f64,
 }
 
+/// What matter does to light at a value, for SV_TECHNIQUE_PATHTRACE.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct sv_medium_point {
+    /// After rescale.
+    pub value: f64,
+    /// Linear numbers of red, green and blue, none under 0.
+    pub linear: [f64; 3],
+}
+
 /// A transfer function by control points in order of their values, constant beyond the ends.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
@@ -55,6 +65,22 @@ pub struct sv_transfer_function_desc {
     pub reference_length: f64,
     /// Not 0: from one point to the next the value of the first holds. Else it goes straight.
     pub is_stepped: u32,
+    /// 0.
+    pub reserved: u32,
+    /// Extinction per world length in place of opacities, which are none then: what scatters no light takes the opacity that
+    /// it has over `reference_length`, 0 there being the length behind which half of the light is left in the densest matter.
+    /// None: that of `opacities`.
+    pub extinctions: *const sv_medium_point,
+    /// How many there are, at most 4096.
+    pub extinction_count: u64,
+    /// The part of light that is scattered and not absorbed, 0 to 1. None: the colours in linear light.
+    pub albedos: *const sv_medium_point,
+    /// How many there are, at most 4096.
+    pub albedo_count: u64,
+    /// Light that matter sends out, radiance per world length. None: it sends out none.
+    pub emissions: *const sv_medium_point,
+    /// How many there are, at most 4096.
+    pub emission_count: u64,
 }
 
 // SAFETY: as the trait wants it.
@@ -134,7 +160,7 @@ pub unsafe extern "C" fn sv_transfer_function_destroy(
 /// As [`structure::read`], and the arrays are as long as they say.
 unsafe fn made(desc: *const sv_transfer_function_desc) -> Result<TransferFunction, Failure> {
     // SAFETY: the caller's promise.
-    let (desc, colors, opacities) = unsafe {
+    let (desc, colors, opacities, [extinctions, albedos, emissions]) = unsafe {
         let desc = structure::read(desc)?;
         let (colors, opacities) = (
             "sv_transfer_function_desc.colors",
@@ -143,8 +169,13 @@ unsafe fn made(desc: *const sv_transfer_function_desc) -> Result<TransferFunctio
         let colors = structure::array(colors, desc.colors, desc.color_count, MOST_POINTS)?;
         let count = desc.opacity_count;
         let opacities = structure::array(opacities, desc.opacities, count, MOST_POINTS)?;
-        (desc, colors, opacities)
+        (desc, colors, opacities, medium(&desc)?)
     };
+    if !extinctions.is_empty() && !opacities.is_empty() {
+        return Err(Failure::argument(
+            "sv_transfer_function_desc: wanted extinctions or opacities, found both",
+        ));
+    }
     rising("sv_color_point.value", colors.iter().map(|p| p.value))?;
     rising("sv_opacity_point.value", opacities.iter().map(|p| p.value))?;
     for channel in colors.iter().flat_map(|point| point.srgb) {
@@ -170,7 +201,7 @@ unsafe fn made(desc: *const sv_transfer_function_desc) -> Result<TransferFunctio
         value: point.value,
         opacity: point.opacity,
     });
-    Ok(TransferFunction {
+    let function = TransferFunction {
         color: color.collect(),
         opacity: opacity.collect(),
         reference_length: (length > 0.0).then_some(length),
@@ -180,7 +211,51 @@ unsafe fn made(desc: *const sv_transfer_function_desc) -> Result<TransferFunctio
         },
         gradient_transfer: None,
         medium: None,
-    })
+    };
+    let mut function = match extinctions.is_empty() {
+        true => function,
+        false => function.with_extinction(extinctions),
+    };
+    if !albedos.is_empty() || !emissions.is_empty() {
+        let medium = function.medium.get_or_insert_default();
+        (medium.albedo, medium.emission) = (albedos, emissions);
+    }
+    Ok(function)
+}
+
+/// Extinctions, albedos and emissions.
+///
+/// # Safety
+/// The arrays are as long as they say.
+unsafe fn medium(desc: &sv_transfer_function_desc) -> Result<[Vec<MediumPoint>; 3], Failure> {
+    let lists = [
+        ("extinctions", desc.extinctions, desc.extinction_count),
+        ("albedos", desc.albedos, desc.albedo_count),
+        ("emissions", desc.emissions, desc.emission_count),
+    ];
+    let mut made = [const { Vec::new() }; 3];
+    for (made, (list, points, count)) in made.iter_mut().zip(lists) {
+        let name = format!("sv_transfer_function_desc.{list}");
+        // SAFETY: the caller's promise.
+        let points = unsafe { structure::array(&name, points, count, MOST_POINTS)? };
+        rising("sv_medium_point.value", points.iter().map(|p| p.value))?;
+        for amount in points.iter().flat_map(|point| point.linear) {
+            match list {
+                "albedos" => share("sv_medium_point.linear", amount)?,
+                _ => number(
+                    "sv_medium_point.linear",
+                    "0 or more",
+                    amount,
+                    amount >= 0.0 && amount.is_finite(),
+                )?,
+            }
+        }
+        made.extend(points.iter().map(|point| MediumPoint {
+            value: point.value,
+            linear: point.linear,
+        }));
+    }
+    Ok(made)
 }
 
 fn rising(name: &str, values: impl Iterator<Item = f64>) -> Result<(), Failure> {
@@ -191,4 +266,56 @@ fn rising(name: &str, values: impl Iterator<Item = f64>) -> Result<(), Failure> 
         last = value;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn matter_is_taken_in_as_files_have_it() {
+        let points = [[0.0; 3], [1.0, 0.5, 0.25]].map(|linear| sv_medium_point {
+            value: linear[0],
+            linear,
+        });
+        let desc = sv_transfer_function_desc {
+            struct_size: size_of::<sv_transfer_function_desc>() as u32,
+            next: std::ptr::null(),
+            colors: std::ptr::null(),
+            color_count: 0,
+            opacities: std::ptr::null(),
+            opacity_count: 0,
+            reference_length: 0.0,
+            is_stepped: 0,
+            reserved: 0,
+            extinctions: points.as_ptr(),
+            extinction_count: 2,
+            albedos: points.as_ptr(),
+            albedo_count: 2,
+            emissions: points.as_ptr(),
+            emission_count: 1,
+        };
+        // SAFETY: the arrays are as long as they say.
+        let function = unsafe { made(&desc) }.map_err(|_| ()).expect("a function");
+        let wanted = points.map(|point| MediumPoint {
+            value: point.value,
+            linear: point.linear,
+        });
+        let medium = function.medium.as_deref().expect("a medium");
+        assert_eq!(medium.extinction, wanted);
+        assert_eq!(medium.albedo, wanted);
+        assert_eq!(medium.emission, wanted[..1]);
+        // Half of the light is left over the reference length in the densest matter, by the mean of its colours.
+        let last = function.opacity.last().expect("points").opacity;
+        assert!((last - 0.5).abs() < 1e-12, "{last}");
+        let plain = sv_transfer_function_desc {
+            extinction_count: 0,
+            albedo_count: 0,
+            emission_count: 0,
+            ..desc
+        };
+        // SAFETY: as before.
+        let function = unsafe { made(&plain) }.map_err(|_| ()).expect("a function");
+        assert_eq!(function.medium, None);
+    }
 }

@@ -47,8 +47,8 @@ pub use device::{
     sv_device_set_memory_budget, sv_memory,
 };
 pub use function::{
-    sv_color_point, sv_opacity_point, sv_transfer_function, sv_transfer_function_create,
-    sv_transfer_function_desc, sv_transfer_function_destroy,
+    sv_color_point, sv_medium_point, sv_opacity_point, sv_transfer_function,
+    sv_transfer_function_create, sv_transfer_function_desc, sv_transfer_function_destroy,
 };
 pub use geometry::{
     sv_geometry, sv_geometry_create, sv_geometry_desc, sv_geometry_destroy, sv_geometry_draw,

@@ -111,6 +111,7 @@ impl Bench {
         inputs.extend(files.map(PathBuf::from));
         output::check(self.json.as_slice(), &inputs, self.force)?;
         scene.classification.check()?;
+        scene.path.check_no_focus("a bench")?;
         if scene.section.section.is_some() {
             return Err(Error::usage(
                 "--section is for one picture: a bench looks from all around",

@@ -8,7 +8,7 @@
 //!
 //! Numbers are little-endian. `of` has all that the sums depend on, and is compared place by place; how many samples there
 //! are to be, and what becomes of them, is no part of it. The length of the file is known from the picture's size before
-//! anything is taken from it.
+//! anything is taken from it. Sums of layers are there that the run wanted, and guides of `--denoise-picture` always.
 
 use super::{
     Error,
@@ -20,6 +20,7 @@ use super::{
 };
 use crate::{
     offscreen::PathSums,
+    picture::LayerKind,
     technique::{Settings, pathtrace::SkyPicture},
     volume::Volume,
 };
@@ -34,7 +35,7 @@ use std::{
 };
 
 const MAGIC: &[u8] = b"stratavox samples\n";
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 /// A scene has its functions in it, of at most as much.
 const MAX_WORDS_BYTES: u32 = 8 << 20;
 
@@ -114,8 +115,26 @@ impl KeptSamples {
                 let why = difference("scene.picture.size", &size(&past.of), &size(&own))
                     .or_else(|| difference("volume", &past.of["volume"], &own["volume"]))
                     .or_else(|| difference("", &past.of, &own));
+                let layers = of.scene.picture.layers().into_iter();
+                let lacking = |sums: &PathSums| -> Vec<_> {
+                    let lacking = layers.filter(|&layer| !sums.have(layer));
+                    lacking.map(LayerKind::name).collect()
+                };
                 match (why, past.sums) {
-                    (None, Some(sums)) => sums,
+                    (None, Some(sums)) => match lacking(&sums) {
+                        names if names.is_empty() => sums,
+                        _ if force => PathSums::default(),
+                        names => {
+                            return Err(Error::usage(
+                                format!(
+                                    "--resume: {} keeps no sums of --aov {}",
+                                    self.path.display(),
+                                    names.join(",")
+                                ),
+                                "layers of paths are of all of them: leave these out, or --force begins anew",
+                            ));
+                        }
+                    },
                     _ if force => PathSums::default(),
                     (why, _) => {
                         let why = why.unwrap_or_default();
@@ -276,16 +295,21 @@ impl Past {
             return Ok(own(None));
         }
         let pixels = u64::from(width) * u64::from(height);
-        let rest = PathSums::byte_count(pixels) + 4;
-        let wanted = head.len() as u64 + u64::from(words_bytes) + rest;
+        let mut counts = [0; PathSums::HEAD_BYTES];
+        let damaged = || refused("it is damaged".to_owned());
+        file.read_exact(&mut counts).map_err(unread)?;
+        let bytes = PathSums::byte_count(counts, pixels).ok_or_else(damaged)?;
+        let wanted = head.len() as u64 + u64::from(words_bytes) + bytes + 4;
         if length != wanted {
             return Err(refused(format!(
                 "wanted {wanted} bytes for {width} x {height} pixels, found {length}"
             )));
         }
-        let mut sums = Vec::with_capacity(rest as usize);
-        file.take(rest).read_to_end(&mut sums).map_err(unread)?;
-        let damaged = || refused("it is damaged".to_owned());
+        let mut sums = Vec::with_capacity(bytes as usize + 4);
+        sums.extend_from_slice(&counts);
+        file.take(bytes + 4 - counts.len() as u64)
+            .read_to_end(&mut sums)
+            .map_err(unread)?;
         let (sums, crc) = sums.split_last_chunk().ok_or_else(damaged)?;
         let mut all = Crc::new();
         for part in [&head[..], &words, sums] {

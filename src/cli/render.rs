@@ -21,7 +21,7 @@ use super::{
 };
 use crate::annotate::Annotation;
 use crate::format::{self, write::has_coarser_levels};
-use crate::offscreen::{Traced, has_path_layers};
+use crate::offscreen::Traced;
 use crate::picture::{
     BitDepth, EncodedPicture, LayerKind, PictureFormat, WriteOptions, write_picture,
 };
@@ -409,17 +409,6 @@ impl Render {
             return Err(Error::usage(
                 "--keep-samples is of one picture, and --repeat draws several",
                 "leave out --repeat",
-            ));
-        }
-        let layers = scene.picture.layers();
-        if has_path_layers(&layers) {
-            let names: Vec<_> = layers.iter().map(|layer| layer.name()).collect();
-            return Err(Error::usage(
-                format!(
-                    "--keep-samples keeps sums of colours, of which --aov noise and transmittance follow, and found --aov {}",
-                    names.join(",")
-                ),
-                "leave out the other layers, or --keep-samples",
             ));
         }
         KeptSamples::open(path, extent, self.resume, self.force).map(Some)

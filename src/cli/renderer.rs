@@ -16,7 +16,7 @@ use crate::{
     offscreen::{self, Ceilings, Kept, PathSums, Stream, Traced, reference},
     picture::{LayerKind, Picture},
     scene::{Beside, Scene},
-    technique::{Filter, InPixel, Mode, Role, Settings, layers::Lack},
+    technique::{Filter, InPixel, Mode, Role, Settings, layers::Lack, pathtrace::PathTracing},
     volume::{Denoise, Volume, labels::labels_of},
 };
 use std::panic::resume_unwind;
@@ -87,6 +87,10 @@ pub struct Frame {
     /// By the device's own clock.
     pub gpu_ms: Option<f64>,
 }
+
+/// The middle of a picture is one pixel of a view that is so much narrower, with so many paths.
+const MIDDLE_ZOOM: f64 = 1e3;
+const MIDDLE_PATHS: u32 = 64;
 
 /// The word of `--device` for the CPU references.
 pub const REFERENCE: &str = "reference";
@@ -354,6 +358,44 @@ impl<'a> Renderer<'a> {
             Some(renderer) => Ok(renderer.render(&scene, &[])?.picture),
             None => self.reference(&scene),
         }
+    }
+
+    /// How far ahead of the eye paths through the middle of the picture meet matter, the mean of those that do; `None`: none
+    /// does.
+    pub fn distance_ahead(
+        &mut self,
+        camera: &Camera,
+        settings: &Settings,
+    ) -> Result<Option<f64>, Error> {
+        let camera = &Camera {
+            zoom: MIDDLE_ZOOM * camera.zoom,
+            ..*camera
+        };
+        let settings = &Settings {
+            path: PathTracing {
+                samples: MIDDLE_PATHS,
+                bounces: Some(0),
+                noise: None,
+                seconds: None,
+                denoise: false,
+                lens: None,
+                ..settings.path.clone()
+            },
+            ..settings.clone()
+        };
+        let scene = Scene {
+            settings,
+            extent_pixels: [1, 1],
+            ..self.job.scene(camera)
+        };
+        let picture = match &mut self.on_device {
+            Some(renderer) => renderer.render(&scene, &[LayerKind::Depth])?.picture,
+            None => self.reference(&scene)?,
+        };
+        let layers = picture.layers.iter();
+        let mut depths = layers.filter(|layer| layer.kind == LayerKind::Depth);
+        let depth = depths.next().map(|layer| f64::from(layer.values[0]));
+        Ok(depth.filter(|depth| *depth > 0.0))
     }
 
     /// What the CPU references draw.

@@ -24,8 +24,6 @@ mod upload;
 
 pub use behind::check_geometry;
 pub use denoise::denoised;
-#[cfg(feature = "cli")]
-pub(crate) use layer_rules::has_path_layers;
 pub use probe::{Ceilings, ceilings};
 pub use renderer::{Filtered, Kept, PathSums, Rendered, Renderer, Traced};
 pub use stream::{Stream, StreamOptions};
@@ -59,7 +57,7 @@ pub enum Error {
     NoNormals,
     /// Layers of paths, of a picture that goes on from the sums of others.
     #[error(
-        "layers of paths are of all its paths, and this picture goes on from sums of its colours alone"
+        "layers of paths, and guides of the filter that takes noise out, are of all its paths, and this picture goes on from sums without them"
     )]
     NoLayersOfBegun,
     /// The layer of lines, in a picture without geometry.

@@ -22,7 +22,7 @@ use crate::technique::composite::Composite;
 use crate::technique::faces::{FACE_LENGTH, cut_face, on_face};
 use crate::technique::mixture::color_of;
 use crate::technique::own_grid::{ChannelGrids, place_in_channel};
-use crate::technique::pathtrace::{PathTracing, denoised};
+use crate::technique::pathtrace::{Guide, PathTracing, denoised, guide_of};
 use crate::technique::reference::{Gathered, Samples, moved};
 use crate::technique::shading::shade;
 use crate::technique::splat::ViewPoints;
@@ -120,7 +120,12 @@ fn render_denoised<R: Real>(scene: &Scene) -> Result<Picture, Error> {
     let counts = [half, path.samples - half];
     let (first, of_first) = of_half(path.first_sample, counts[0])?;
     let (second, of_second) = of_half(path.first_sample + half, counts[1])?;
-    let pixels = denoised([&first.pixels, &second.pixels], first.width as usize);
+    let guides = [&of_first, &of_second].map(|half| guides_of(half));
+    let pixels = denoised(
+        [&first.pixels, &second.pixels],
+        [&guides[0], &guides[1]],
+        first.width as usize,
+    );
     let pairs = of_first.into_iter().zip(of_second);
     let all: Vec<_> = pairs.map(|both| mean_of_paths(both, counts)).collect();
     let layers = layers(scene, &all)?;
@@ -129,6 +134,12 @@ fn render_denoised<R: Real>(scene: &Scene) -> Result<Picture, Error> {
         layers,
         ..first
     })
+}
+
+/// What paths leave for the filter.
+fn guides_of<R: Real>(gathered: &[Gathered<R>]) -> Vec<Guide> {
+    let guide = |g: &Gathered<R>| guide_of(&g.paths.unwrap_or_default());
+    gathered.iter().map(guide).collect()
 }
 
 /// Of so many paths and so many others.

@@ -28,7 +28,7 @@ use super::Error;
 use super::fade::{render_faded, stacks_of};
 use super::gradients::decided;
 use super::keyed::Keyed;
-use super::layer_rules::{Clock, Mean, check_layers, has_path_layers};
+use super::layer_rules::{Clock, Mean, check_layers};
 use super::light::Matter;
 use super::passes::{Passes, key_of};
 use super::stream::{Cache, Stream};
@@ -219,7 +219,10 @@ impl<'v> Renderer<'v> {
     /// # Errors
     /// As [`Renderer::render`].
     pub fn prepare_pipelines(&mut self, scene: &Scene) -> Result<(), Error> {
-        self.prepare_with(scene, |renderer, scene| renderer.prepare(scene, false))
+        self.prepare_with(scene, |renderer, scene| {
+            let has_layers = renderer.leaves_path_images(scene.settings, &[]);
+            renderer.prepare(scene, has_layers)
+        })
     }
 
     /// Finds out what pictures of `scene` need not look at, as [`Renderer::prepare_pipelines`] makes pipelines.
@@ -312,7 +315,7 @@ impl<'v> Renderer<'v> {
     ) -> Result<Picture, Error> {
         let most_turns = self.device.gpu().limits().max_loop_turns;
         let has_layers = match scene.settings.technique.traces_paths() {
-            true => has_path_layers(layers),
+            true => self.leaves_path_images(scene.settings, layers),
             false => !layers.is_empty(),
         };
         self.passes_done = [0, passes_of(scene, has_layers, most_turns)];

@@ -232,6 +232,34 @@ static void functions(void) {
     WITH(sv_transfer_function_desc, start, reference_length, (double)NAN, SV_E_ARGUMENT);
     WITH(sv_transfer_function_desc, start, reference_length, (double)INFINITY, SV_E_ARGUMENT);
     WITH(sv_transfer_function_desc, start, colors, (const sv_color_point *)((const char *)colors + 1), SV_E_ARGUMENT);
+    static const sv_medium_point matter[] = {{0, {0, 0, 0}}, {1, {1, 0.5, 0.25}}};
+    sv_transfer_function_desc medium = start;
+    medium.opacities = NULL;
+    medium.opacity_count = 0;
+    medium.extinctions = medium.albedos = medium.emissions = matter;
+    medium.extinction_count = medium.albedo_count = medium.emission_count = 2;
+    GOOD(with_function(medium));
+    GOOD(sv_transfer_function_destroy(made_handle, &diagnostic));
+    WITH(sv_transfer_function_desc, medium, extinctions, NULL, SV_E_ARGUMENT);
+    WITH(sv_transfer_function_desc, medium, albedos, NULL, SV_E_ARGUMENT);
+    WITH(sv_transfer_function_desc, medium, emissions, NULL, SV_E_ARGUMENT);
+    WITH(sv_transfer_function_desc, medium, extinction_count, 4097, SV_E_LIMIT);
+    WITH(sv_transfer_function_desc, medium, emission_count, UINT64_MAX, SV_E_LIMIT);
+    sv_transfer_function_desc both = medium;
+    both.opacities = opacities;
+    both.opacity_count = 2;
+    BAD(SV_E_ARGUMENT, with_function(both));
+    static const sv_medium_point wrong_matter[][2] = {{{1, {0, 0, 0}}, {0, {0, 0, 0}}},
+                                                      {{0, {0, 0, 0}}, {1, {0, -1, 0}}},
+                                                      {{0, {0, 0, 0}}, {1, {0, 0, NAN}}},
+                                                      {{0, {0, INFINITY, 0}}, {1, {0, 0, 0}}}};
+    for (size_t k = 0; k < sizeof wrong_matter / sizeof *wrong_matter; ++k) {
+        WITH(sv_transfer_function_desc, medium, extinctions, wrong_matter[k], SV_E_ARGUMENT);
+        WITH(sv_transfer_function_desc, medium, albedos, wrong_matter[k], SV_E_ARGUMENT);
+        WITH(sv_transfer_function_desc, medium, emissions, wrong_matter[k], SV_E_ARGUMENT);
+    }
+    static const sv_medium_point too_bright[] = {{0, {0, 0, 0}}, {1, {0, 1.5, 0}}};
+    WITH(sv_transfer_function_desc, medium, albedos, too_bright, SV_E_ARGUMENT);
     static const sv_color_point wrong_colors[][2] = {{{1, {0, 0, 0}}, {0, {0, 0, 0}}},
                                                      {{0, {0, 0, 0}}, {NAN, {0, 0, 0}}},
                                                      {{0, {0, 0, 0}}, {INFINITY, {0, 0, 0}}},

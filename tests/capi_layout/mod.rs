@@ -38,7 +38,8 @@ pub fn asserts() -> Vec<String> {
         sv_requirement { name, wanted, found, unlocks, is_required, is_met }
         sv_color_point { value, srgb }
         sv_opacity_point { value, opacity }
-        sv_transfer_function_desc { struct_size, next, colors, color_count, opacities, opacity_count, reference_length, is_stepped }
+        sv_medium_point { value, linear }
+        sv_transfer_function_desc { struct_size, next, colors, color_count, opacities, opacity_count, reference_length, is_stepped, reserved, extinctions, extinction_count, albedos, albedo_count, emissions, emission_count }
         sv_pick { struct_size, next, is_hit, has_value, has_color, reserved, distance, position, value, color }
         sv_camera { struct_size, next, kind, is_reversed, eye, target, up, fov_degrees, view_height, zoom, view_from_world, clip_from_view }
         sv_frame_info { struct_size, next, camera, frame, reserved }

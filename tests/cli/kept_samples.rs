@@ -65,6 +65,51 @@ fn a_picture_that_goes_on_is_that_of_one_run() {
     );
 }
 
+/// Layers, and the filter that takes noise out, are of all paths too.
+#[test]
+fn layers_go_on_and_those_that_were_not_kept_are_refused() {
+    let folder = Folder::new();
+    let read = |name: &str| fs::read(folder.path(name)).expect("a file");
+    let wanted = "--aov direct,bounces,depth,noise";
+    folder
+        .run(&format!("{WORDS} --spp 28 {wanted} -o one.exr"))
+        .assert_done();
+    let keep = format!("{WORDS} --keep-samples s");
+    folder
+        .run(&format!("{keep} --spp 11 {wanted} -o a.exr"))
+        .assert_done();
+    let ran = folder.run(&format!("{keep} --spp 28 --resume {wanted} -o b.exr"));
+    ran.assert_done();
+    assert!(ran.err.contains("10 paths a pixel are there") || ran.err.contains("8 paths"));
+    assert!(read("b.exr") == read("one.exr"));
+    // Guides are kept whatever is wanted, other layers are not.
+    let again = format!("{keep} --spp 28 --resume -o c.exr --aov");
+    folder.run(&format!("{again} albedo,normal")).assert_done();
+    let ran = folder.run(&format!("{again} indirect,direct,emission"));
+    ran.assert_refused(
+        2,
+        &["s keeps no sums of --aov indirect,emission", "--force"],
+    );
+    folder
+        .run(&format!("{again} indirect --force"))
+        .assert_done();
+    // One kind of layer alone takes as much as its images do.
+    let head = 80 + 2 * 64;
+    let pixels = 24 * 20;
+    let length = |name: &str| read(name).len();
+    folder
+        .run(&format!("{WORDS} --spp 4 --keep-samples t -o t.png"))
+        .assert_done();
+    folder
+        .run(&format!(
+            "{WORDS} --spp 4 --keep-samples u --aov direct -o u.exr"
+        ))
+        .assert_done();
+    assert!((head * pixels..head * pixels + 8192).contains(&length("t")));
+    let more = length("u") - length("t");
+    assert!((64 * pixels..64 * pixels + 64).contains(&more), "{more}");
+}
+
 #[test]
 fn samples_of_another_picture_are_refused_by_what_is_other() {
     let folder = Folder::new();

@@ -141,10 +141,6 @@ fn what_paths_do_not_go_with_is_refused_by_name() {
         ("value", "--aov value needs"),
         ("noise --device reference", "--device reference"),
         (
-            "noise,albedo --keep-samples s.samples",
-            "--aov noise,albedo",
-        ),
-        (
             "transmittance --environment 1,1,1 --background environment",
             "--background",
         ),
@@ -166,6 +162,99 @@ fn what_paths_do_not_go_with_is_refused_by_name() {
         "{}",
         ran.err
     );
+}
+
+/// A wall that begins half way between the voxels 3 and 4 along x, in air; seen along x from 20 before the first voxel.
+fn wall(folder: &Folder) -> &'static str {
+    let mut bytes = b"NRRD0005\ntype: uint8\ndimension: 3\nspace dimension: 3\nsizes: 8 8 8\n\
+        space directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\nencoding: raw\n\n"
+        .to_vec();
+    bytes.extend((0..512).map(|i| if i % 8 < 4 { 0 } else { 200 }));
+    fs::write(folder.path("wall.nrrd"), bytes).expect("a file");
+    "render wall.nrrd --look plain --technique pathtrace --size 24x20 --spp 2 --force --iso 100 --density-scale 1e-6 --eye=-20,3.5,3.5 --target 3.5,3.5,3.5 --up 0,0,1 --aperture-radius 1"
+}
+
+#[test]
+fn a_lens_is_focused_on_what_the_middle_shows() {
+    let folder = Folder::new();
+    let words = wall(&folder);
+    let read = |name: &str| fs::read(folder.path(name)).expect("a file");
+    let said = |ran: &crate::person::Ran| -> f64 {
+        let (_, word) = ran.err.split_once("--focus-distance ").expect(&ran.err);
+        let number = word.split_whitespace().next().expect("a number");
+        number.parse().expect(word)
+    };
+    // The value is 100 half way from 0 to 200: 23.5 ahead.
+    let auto = folder.run(&format!(
+        "{words} --focus-distance auto -o a.npy --save-scene s.json"
+    ));
+    auto.assert_done();
+    let ahead = said(&auto);
+    assert!((ahead - 23.5).abs() < 1e-3, "{ahead}");
+    for (more, name) in [
+        (format!("--focus-distance {ahead}"), "b.npy"),
+        ("--scene s.json".to_owned(), "b.npy"),
+    ] {
+        let words = match more.contains("scene") {
+            true => format!("render {more} -o {name} --force"),
+            false => format!("{words} {more} -o {name}"),
+        };
+        folder.run(&words).assert_done();
+        assert!(read("a.npy") == read(name), "{more}");
+    }
+    folder
+        .run(&format!("{words} --focus-distance target -o b.npy"))
+        .assert_done();
+    folder.run(&format!("{words} -o c.npy")).assert_done();
+    assert!(read("b.npy") == read("c.npy"));
+    let ran = folder.run(&format!(
+        "{words} --focus-distance auto --device reference -o c.npy"
+    ));
+    ran.assert_done();
+    assert!((said(&ran) - 23.5).abs() < 1e-3, "{}", ran.err);
+    // Nothing is there: the target stays.
+    let ran = folder.run(&format!(
+        "{words} --focus-distance auto --target=-20,3.5,30 -o c.npy"
+    ));
+    ran.assert_done();
+    assert!(ran.err.contains("the middle shows nothing"), "{}", ran.err);
+    let film = words.replace("render", "animate");
+    let ran = folder.run(&format!(
+        "{film} --focus-distance auto --turntable 2 -o f.gif"
+    ));
+    ran.assert_refused(2, &["--focus-distance auto", "a film"]);
+    let ran = folder
+        .run("bench wall.nrrd --technique pathtrace --aperture-radius 1 --focus-distance auto");
+    ran.assert_refused(2, &["--focus-distance auto", "a bench"]);
+    let ran = folder.run(&format!("{words} --focus-distance near -o c.npy"));
+    ran.assert_refused(2, &["target, or auto"]);
+}
+
+/// Films have the layers of each of their frames.
+#[test]
+fn films_have_layers_of_paths() {
+    let folder = Folder::new();
+    let of = "phantom:head,n=16 --look plain --technique pathtrace --size 24x20 --spp 4";
+    let layers = "--aov albedo,normal,depth,direct,indirect,bounces,noise --denoise-picture";
+    folder
+        .run(&format!(
+            "animate {of} {layers} --view left --turntable 4 -o f/%02d.npy"
+        ))
+        .assert_done();
+    folder
+        .run(&format!(
+            "render {of} {layers} --azimuth 450 --elevation 0 -o a.npy"
+        ))
+        .assert_done();
+    for layer in [
+        "", ".albedo", ".normal", ".depth", ".direct", ".bounces", ".noise",
+    ] {
+        let read =
+            |name: &str| fs::read(folder.path(&format!("{name}{layer}.npy"))).expect("a file");
+        // The last frame of a turn by quarters that begins at 180 degrees.
+        assert!(read("f/03") == read("a"), "{layer}");
+        assert!(read("f/00") != read("f/03"), "{layer}");
+    }
 }
 
 #[test]

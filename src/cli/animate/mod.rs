@@ -338,6 +338,7 @@ impl Animate {
             self.times |= self.turntable.is_none() && self.keyframes.is_none();
         }
         scene.annotate.check()?;
+        scene.path.check_no_focus("a film")?;
         let target = Target::new(&self.output)?;
         let layers = scene.picture.layers();
         self.check_target(&target, &scene.picture)?;

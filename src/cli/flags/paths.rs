@@ -1,7 +1,7 @@
 //! Path tracing: flags to [`PathTracing`].
 
 use super::numbers::positive;
-use super::{EnvironmentWord, Error, LightFlags, Numbers, ScatteringWord, finite};
+use super::{EnvironmentWord, Error, FocusWord, LightFlags, Numbers, ScatteringWord, finite};
 use crate::technique::Light;
 use crate::technique::pathtrace::{Lens, PathTracing, Phase};
 use clap::Args;
@@ -87,10 +87,11 @@ pub struct PathFlags {
     #[arg(long, value_name = "LENGTH", value_parser = positive, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub aperture_radius: Option<f64>,
-    /// How far ahead of the eye is sharp, world length [default: where the camera is turned to]
-    #[arg(long, value_name = "LENGTH", value_parser = positive, requires = "aperture_radius", help_heading = HEADING)]
+    /// How far ahead of the eye is sharp: a world length, target, where the camera is turned to, or auto, where the middle of
+    /// the picture meets matter [default: target]
+    #[arg(long, value_name = "LENGTH|target|auto", requires = "aperture_radius", help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub focus_distance: Option<f64>,
+    pub focus_distance: Option<FocusWord>,
     /// Take the noise out of the picture, by what two halves of the paths say of it; 4 paths at least
     #[arg(long, help_heading = HEADING)]
     #[serde(skip_serializing_if = "std::ops::Not::not")]
@@ -140,10 +141,26 @@ impl PathFlags {
             roughness: self.roughness.unwrap_or(default.roughness),
             lens: self.aperture_radius.map(|radius| Lens {
                 radius,
-                focus: self.focus_distance,
+                focus: self.focus_distance.and_then(FocusWord::length),
             }),
             ..default
         })
+    }
+
+    /// Whether where it is sharp is yet to be found: until then that is where the camera is turned to.
+    pub fn finds_focus(&self) -> bool {
+        self.focus_distance == Some(FocusWord::Auto)
+    }
+
+    /// Refuses what looks from several places, `this`, with a focus that is found for one.
+    pub fn check_no_focus(&self, this: &str) -> Result<(), Error> {
+        match self.finds_focus() {
+            true => Err(Error::usage(
+                format!("--focus-distance auto is found for one picture, and {this} has several"),
+                "--focus-distance LENGTH or target",
+            )),
+            false => Ok(()),
+        }
     }
 
     /// The picture of the sky.

@@ -9,7 +9,10 @@
 //! B blocks have N paths a pixel together; S1 is the sum of n y and S2 that of n y^2 over blocks of n paths whose mean
 //! luminance is y. Sums are f64, and those of a picture that is gone on with are those of one that never stopped.
 
+use super::path_layers::PathImages;
+use crate::offscreen::Error;
 use crate::picture::{Layer, LayerKind};
+use crate::technique::pathtrace::Guide;
 
 /// Sums of the paths of a picture.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -20,12 +23,12 @@ pub struct PathSums {
     blocks: u32,
     /// Of the luminance of each block's pixels: S1 and S2.
     luminance: Vec<[f64; 2]>,
+    /// What paths leave beside their colours.
+    images: PathImages,
 }
 
-/// Of a pixel in a file: two colours with alpha and two numbers of luminance.
+/// Of a pixel in a file: two colours with alpha and two numbers of luminance; images come behind.
 const BYTES_OF_PIXEL: usize = 8 * (2 * 4 + 2);
-/// Before the pixels: blocks, and paths of even and of odd ones.
-const BYTES_OF_COUNTS: usize = 4 * 3;
 
 impl PathSums {
     /// Paths of each pixel.
@@ -33,22 +36,29 @@ impl PathSums {
         self.paths_of_halves.iter().sum()
     }
 
-    /// How long [`Self::to_bytes`] of a picture of so many pixels are.
-    pub fn byte_count(pixels: u64) -> u64 {
-        BYTES_OF_COUNTS as u64 + pixels * BYTES_OF_PIXEL as u64
+    /// How many bytes of [`Self::to_bytes`] stand before the pixels.
+    pub const HEAD_BYTES: usize = 4 * 4;
+
+    /// How long [`Self::to_bytes`] are of a picture of so many pixels that begin with `head`; `None`: no sums do.
+    pub fn byte_count(head: [u8; Self::HEAD_BYTES], pixels: u64) -> Option<u64> {
+        let [.., mask] = counts_of(head);
+        let images = PathImages::of_mask(mask)?;
+        let bytes_of_pixel = BYTES_OF_PIXEL + images.bytes_of_pixel();
+        Some(Self::HEAD_BYTES as u64 + pixels * bytes_of_pixel as u64)
     }
 
-    /// As they stand in a file, little-endian: three u32, blocks and the paths of even and of odd ones; then f64, for each
-    /// pixel the sum of even blocks, for each that of odd blocks, for each S1 and S2.
+    /// As they stand in a file, little-endian: four u32, blocks, the paths of even and of odd ones, and a bit for each image
+    /// that is there beside the colours; then f64, for each pixel the sum of even blocks, for each that of odd blocks, for each
+    /// S1 and S2, and of each image the sums of even and of odd blocks.
     pub fn to_bytes(&self) -> Vec<u8> {
         let [even, odd] = self.paths_of_halves;
-        let count = Self::byte_count(self.luminance.len() as u64);
-        let mut bytes = Vec::with_capacity(count as usize);
-        for count in [self.blocks, even, odd] {
+        let mut bytes = Vec::new();
+        for count in [self.blocks, even, odd, self.images.mask()] {
             bytes.extend_from_slice(&count.to_le_bytes());
         }
         let colors = self.halves.iter().flatten().flatten();
-        for number in colors.chain(self.luminance.iter().flatten()) {
+        let numbers = colors.chain(self.luminance.iter().flatten());
+        for number in numbers.chain(self.images.numbers()) {
             bytes.extend_from_slice(&number.to_le_bytes());
         }
         bytes
@@ -56,13 +66,13 @@ impl PathSums {
 
     /// What [`Self::to_bytes`] has written of a picture of so many pixels; `None` for other bytes.
     pub fn from_bytes(bytes: &[u8], pixels: usize) -> Option<Self> {
-        let is_whole = bytes.len() as u64 == Self::byte_count(pixels as u64);
-        let (counts, numbers) = bytes.split_at_checked(BYTES_OF_COUNTS)?;
-        let mut counts = counts
-            .chunks_exact(4)
-            .map(|c| u32::from_le_bytes(c.try_into().expect("four bytes")));
-        let [blocks, even, odd] = std::array::from_fn(|_| counts.next().unwrap_or(0));
-        even.checked_add(odd).filter(|&all| is_whole && all > 0)?;
+        let (&head, numbers) = bytes.split_first_chunk()?;
+        let wanted = Self::byte_count(head, pixels as u64)?;
+        let [blocks, even, odd, mask] = counts_of(head);
+        let all = even.checked_add(odd)?;
+        if bytes.len() as u64 != wanted || all == 0 {
+            return None;
+        }
         let mut numbers = numbers
             .chunks_exact(8)
             .map(|c| f64::from_le_bytes(c.try_into().expect("eight bytes")));
@@ -71,19 +81,52 @@ impl PathSums {
             let pixel = |_| std::array::from_fn(|_| next());
             (0..pixels).map(pixel).collect()
         });
+        let luminance = (0..pixels)
+            .map(|_| std::array::from_fn(|_| next()))
+            .collect();
+        let mut images = PathImages::of_mask(mask)?;
+        images.fill(pixels, next);
         Some(Self {
             halves,
             paths_of_halves: [even, odd],
             blocks,
-            luminance: (0..pixels)
-                .map(|_| std::array::from_fn(|_| next()))
-                .collect(),
+            luminance,
+            images,
         })
+    }
+
+    /// Whether a layer of paths can be made of them.
+    pub fn have(&self, kind: LayerKind) -> bool {
+        self.images.include(&PathImages::of(&[kind], false))
+    }
+
+    /// Whether there are images beside colours.
+    pub(super) fn have_images(&self) -> bool {
+        self.images.mask() != 0
+    }
+
+    /// From here on what these layers are made of is summed up, and guides.
+    ///
+    /// # Errors
+    /// [`Error::NoLayersOfBegun`] where paths are there already, without it.
+    pub(super) fn want(&mut self, kinds: &[LayerKind], has_guides: bool) -> Result<(), Error> {
+        let wanted = PathImages::of(kinds, has_guides);
+        if self.paths() == 0 {
+            self.images = wanted;
+        } else if !self.images.include(&wanted) {
+            return Err(Error::NoLayersOfBegun);
+        }
+        Ok(())
+    }
+
+    /// Which half the next block is one of, and the images that it is added to.
+    pub(super) fn next(&mut self) -> (usize, &mut PathImages) {
+        ((self.blocks % 2) as usize, &mut self.images)
     }
 
     /// One more block: the means of so many paths.
     pub(super) fn add(&mut self, found: &[[f32; 4]], paths: u32) {
-        let half = (self.blocks % 2) as usize;
+        let (half, _) = self.next();
         for half in &mut self.halves {
             half.resize(found.len(), [0.0; 4]);
         }
@@ -121,6 +164,11 @@ impl PathSums {
         })
     }
 
+    /// What guides the filter of each half.
+    pub(super) fn guides(&self) -> [Vec<Guide>; 2] {
+        [0, 1].map(|half| self.images.guides(half, self.paths_of_halves[half]))
+    }
+
     /// The standard error of luminance, as a part of what the picture shows; `None`: one block does not tell.
     pub(super) fn noise(&self) -> Option<f64> {
         if self.blocks < 2 {
@@ -145,8 +193,8 @@ impl PathSums {
         }
     }
 
-    /// The layers that follow from the sums themselves.
-    pub(super) fn layer(&self, kind: LayerKind) -> Option<Layer> {
+    /// A layer of a kind that [`Self::want`] was told of.
+    pub(super) fn layer(&self, kind: LayerKind) -> Layer {
         let values = match kind {
             LayerKind::Noise => {
                 let deviation = |sums| self.variance(sums).sqrt() as f32;
@@ -154,10 +202,18 @@ impl PathSums {
             }
             // The part of paths that have met nothing.
             LayerKind::Transmittance => self.mean().iter().map(|[.., alpha]| 1.0 - alpha).collect(),
-            _ => return None,
+            _ => return self.images.layer(kind, self.paths()),
         };
-        Some(Layer { kind, values })
+        Layer { kind, values }
     }
+}
+
+/// Blocks, paths of even and of odd ones, and the mask of images.
+fn counts_of(head: [u8; PathSums::HEAD_BYTES]) -> [u32; 4] {
+    std::array::from_fn(|i| {
+        let bytes = head[4 * i..][..4].try_into();
+        u32::from_le_bytes(bytes.expect("four bytes"))
+    })
 }
 
 /// Of linear light (ITU-R BT.709).
@@ -212,15 +268,29 @@ mod tests {
 
     #[test]
     fn sums_come_back_from_bytes_of_the_right_length() {
-        let sums = blocks_of([2, 2, 8].into_iter());
-        let bytes = sums.to_bytes();
-        assert_eq!(bytes.len() as u64, PathSums::byte_count(4096));
-        assert_eq!(PathSums::from_bytes(&bytes, 4096), Some(sums));
-        assert_eq!(PathSums::from_bytes(&bytes, 4095), None);
-        assert_eq!(PathSums::from_bytes(&bytes[1..], 4096), None);
+        let mut sums = blocks_of([2, 2, 8].into_iter());
+        let head = |bytes: &[u8]| *bytes.first_chunk().expect("a head");
+        for kinds in [&[][..], &[LayerKind::Direct]] {
+            let mut number = 0.0;
+            sums.images = PathImages::of(kinds, !kinds.is_empty());
+            sums.images.fill(4096, || {
+                number += 1.0;
+                number
+            });
+            let bytes = sums.to_bytes();
+            let wanted = PathSums::byte_count(head(&bytes), 4096);
+            assert_eq!(Some(bytes.len() as u64), wanted);
+            assert_eq!(PathSums::from_bytes(&bytes, 4096), Some(sums.clone()));
+            assert_eq!(PathSums::from_bytes(&bytes, 4095), None);
+            assert_eq!(PathSums::from_bytes(&bytes[1..], 4096), None);
+        }
+        assert!(sums.have(LayerKind::Noise) && sums.have(LayerKind::Depth));
+        assert!(sums.have(LayerKind::Direct) && !sums.have(LayerKind::Indirect));
+        assert!(sums.want(&[LayerKind::Direct], true).is_ok());
+        assert!(sums.want(&[LayerKind::Indirect], true).is_err());
         assert_eq!(PathSums::from_bytes(&[0; 8], 0), None);
-        let of_none = [0; BYTES_OF_COUNTS + BYTES_OF_PIXEL];
+        let of_none = [0; PathSums::HEAD_BYTES + BYTES_OF_PIXEL];
         assert_eq!(PathSums::from_bytes(&of_none, 1), None);
-        assert_eq!(PathSums::from_bytes(&[255; BYTES_OF_COUNTS], 0), None);
+        assert_eq!(PathSums::from_bytes(&[255; PathSums::HEAD_BYTES], 0), None);
     }
 }

@@ -8,7 +8,6 @@
 //! a block depends on their numbers alone, so that a picture that is gone on with has the blocks of one that never stopped.
 
 use super::Renderer;
-use super::path_layers::PathLayers;
 use super::path_sums::PathSums;
 use crate::offscreen::Error;
 use crate::offscreen::layer_rules::{Clock, has_path_layers};
@@ -83,7 +82,7 @@ impl<'v> Renderer<'v> {
     }
 
     /// The next picture of paths goes on from `begun`, sums of the same picture; none of them: from its beginning. `keep` is
-    /// told the sums after each 30 s of tracing and at the end of a picture, without a last block that `samples` cuts off:
+    /// told the sums, with those of the layers of the picture and of the guides of [`PathTracing::denoise`], after each 30 s of tracing and at the end of a picture, without a last block that `samples` cuts off:
     /// a picture that goes on from there is, bit by bit, the one of a run that never stopped.
     pub fn keep_paths(&mut self, begun: PathSums, keep: impl FnMut(&PathSums) + Send + 'v) {
         self.path_ends.begun = begun;
@@ -110,10 +109,7 @@ impl<'v> Renderer<'v> {
         let at_once = paths_at_once(turns);
         let begun = Instant::now();
         let mut sums = std::mem::take(&mut self.path_ends.begun);
-        if has_path_layers(wanted) && sums.paths() > 0 {
-            return Err(Error::NoLayersOfBegun);
-        }
-        let mut layers = PathLayers::of(wanted);
+        sums.want(wanted, all.denoise || self.path_ends.keeping.is_some())?;
         self.passes_done[0] = passes_of_paths(sums.paths(), turns) as usize;
         let has_ended = loop {
             if self.path_ends.are_reached(&sums, all, begun) {
@@ -123,13 +119,13 @@ impl<'v> Renderer<'v> {
             if sums.paths() + paths > all.samples {
                 break false;
             }
-            self.trace(scene, paths, (&mut sums, &mut layers), clock)?;
+            self.trace(scene, paths, &mut sums, clock)?;
             self.path_ends.keep(&sums, KEPT_EVERY);
         };
         self.path_ends.keep(&sums, Duration::ZERO);
         let rest = all.samples.saturating_sub(sums.paths());
         if !has_ended && rest > 0 {
-            self.trace(scene, rest, (&mut sums, &mut layers), clock)?;
+            self.trace(scene, rest, &mut sums, clock)?;
         }
         self.path_ends.traced = Traced {
             paths: sums.paths(),
@@ -137,11 +133,14 @@ impl<'v> Renderer<'v> {
         };
         let width = scene.extent_pixels[0] as usize;
         let pixels = match sums.halves().filter(|_| all.denoise) {
-            Some([first, second]) => denoised([&first, &second], width),
+            Some([first, second]) => {
+                let [by_first, by_second] = sums.guides();
+                denoised([&first, &second], [&by_first, &by_second], width)
+            }
             None => sums.mean(),
         };
-        let layer = |&kind| sums.layer(kind).unwrap_or_else(|| layers.layer(kind));
-        Ok((pixels, wanted.iter().map(layer).collect()))
+        let layers = wanted.iter().map(|&kind| sums.layer(kind));
+        Ok((pixels, layers.collect()))
     }
 
     /// One more block.
@@ -149,7 +148,7 @@ impl<'v> Renderer<'v> {
         &mut self,
         scene: &Scene,
         paths: u32,
-        (sums, layers): (&mut PathSums, &mut PathLayers),
+        sums: &mut PathSums,
         clock: &mut Clock,
     ) -> Result<(), Error> {
         let all = &scene.settings.path;
@@ -165,8 +164,21 @@ impl<'v> Renderer<'v> {
         let block = &Scene { settings, ..*scene };
         let (found, gpu_ms) = self.colors(block, InPixel::CENTER)?;
         clock.add(gpu_ms);
+        let (half, images) = sums.next();
+        self.add_path_images((half, paths), images)?;
         sums.add(&found, paths);
-        self.add_path_layers(paths, layers)
+        Ok(())
+    }
+
+    /// Whether paths leave images beside their picture: for layers, for the filter that takes noise out, and for whoever
+    /// keeps the sums, who may want them later.
+    pub(super) fn leaves_path_images(&self, settings: &Settings, wanted: &[LayerKind]) -> bool {
+        let ends = &self.path_ends;
+        settings.technique.traces_paths()
+            && (settings.path.denoise
+                || ends.keeping.is_some()
+                || ends.begun.have_images()
+                || has_path_layers(wanted))
     }
 }
 

@@ -1,36 +1,49 @@
 //! Noise out of a picture that is the mean of two independent ones, by non-local means (Buades et al. 2005) in the form of
-//! Rousselle, Knaus & Zwicker, "Adaptive Rendering with Non-Local Means Filtering", 2012.
+//! Rousselle, Knaus & Zwicker, "Adaptive Rendering with Non-Local Means Filtering", 2012, with guides (2013: "Robust Denoising
+//! using Feature and Color Buffers").
 //!
 //! ```text
 //! v     = (a - b)^2 / 2, mean of 3 x 3                         variance of each half
 //! d^2   = mean over 5 x 5 and channels of ((b_p - b_q)^2 - (v_p + min(v_p, v_q))) / (eps + k^2 (v_p + v_q))
-//! a'(p) = sum over 15 x 15 of w a_q / sum of w                 w = exp(-max(0, d^2)) by the other half
+//! D^2   = max(0, d^2) + sum over guides of max(0, mean over 5 x 5 of their d^2)
+//! a'(p) = sum over 15 x 15 of w a_q / sum of w                 w = exp(-D^2) by the other half
 //! ```
 //!
 //! Weights by one half filter the other, so that what is noise in both is not kept for detail. A picture without noise stays
-//! as it is.
+//! as it is. Guides ([`super::guides`]) keep apart what is lit alike and is not the same; with them colours may differ by more.
+
+use super::guides::{Compared, Guide, apart, compared};
 
 const WINDOW: usize = 7;
 const SIDE: usize = 2 * WINDOW + 1;
 const PATCH: usize = 2;
 const TAPS: usize = 2 * PATCH + 1;
 /// How far pixels may differ, in standard deviations of their difference.
-const STRENGTH: f32 = 0.45;
+const STRENGTH: f32 = 0.6;
 const LEAST: f32 = 1e-10;
 /// Pixels farther apart have no weight: it would be a thousandth.
 const MOST_APART: f32 = 6.9;
 
-/// The mean of two pictures of `width` pixels a row, of different paths and as many, without their noise.
-pub fn denoised(halves: [&[[f32; 4]]; 2], width: usize) -> Vec<[f32; 4]> {
+/// How far pixels are apart by their colours and by each guide.
+const FEATURES: usize = 4;
+
+/// The mean of two pictures of `width` pixels a row, of different paths and as many, without their noise; with what guides
+/// each of them.
+pub fn denoised(halves: [&[[f32; 4]]; 2], guides: [&[Guide]; 2], width: usize) -> Vec<[f32; 4]> {
     let [a, b] = halves;
     let height = a.len() / width.max(1);
     if a.is_empty() {
         return Vec::new();
     }
-    let variance = Padded::of(&variance(halves, width, height), width, height);
-    let by = halves.map(|half| By {
-        colors: Padded::of(half, width, height),
-        variance: variance.clone(),
+    let size = [width, height];
+    let guides = compared(guides);
+    let variance_of_guides = variance([&guides[0], &guides[1]], size);
+    let variance = variance(halves, size);
+    let by = [0, 1].map(|half| By {
+        colors: Padded::of(halves[half], size),
+        variance: Padded::of(&variance, size),
+        guides: Padded::of(&guides[half], size),
+        variance_of_guides: Padded::of(&variance_of_guides, size),
         width,
         height,
     });
@@ -49,11 +62,14 @@ pub fn denoised(halves: [&[[f32; 4]]; 2], width: usize) -> Vec<[f32; 4]> {
     picture
 }
 
-/// Of each half, per channel.
-fn variance([a, b]: [&[[f32; 4]]; 2], width: usize, height: usize) -> Vec<[f32; 4]> {
+/// Of each half, per number.
+fn variance<const N: usize>(
+    [a, b]: [&[[f32; N]]; 2],
+    [width, height]: [usize; 2],
+) -> Vec<[f32; N]> {
     let of = |x: usize, y: usize| {
         let (a, b) = (a[y * width + x], b[y * width + x]);
-        [0, 1, 2, 3].map(|c| 0.5 * (a[c] - b[c]).powi(2))
+        std::array::from_fn(|c| 0.5 * (a[c] - b[c]).powi(2))
     };
     let mean = |at: usize| {
         let (x, y) = (at % width, at / width);
@@ -63,9 +79,9 @@ fn variance([a, b]: [&[[f32; 4]]; 2], width: usize, height: usize) -> Vec<[f32; 
         );
         let count = (xs.clone().count() * ys.clone().count()) as f32;
         let all = ys.flat_map(|y| xs.clone().map(move |x| (x, y)));
-        let sum = all.fold([0.0; 4], |sum: [f32; 4], (x, y)| {
-            let one = of(x, y);
-            [0, 1, 2, 3].map(|c| sum[c] + one[c])
+        let sum = all.fold([0.0; N], |sum: [f32; N], (x, y)| {
+            let one: [f32; N] = of(x, y);
+            std::array::from_fn(|c| sum[c] + one[c])
         });
         sum.map(|s| s / count)
     };
@@ -74,8 +90,10 @@ fn variance([a, b]: [&[[f32; 4]]; 2], width: usize, height: usize) -> Vec<[f32; 
 
 /// What weights are made of, held beyond the edges of the picture.
 struct By {
-    colors: Padded,
-    variance: Padded,
+    colors: Padded<[f32; 4]>,
+    variance: Padded<[f32; 4]>,
+    guides: Padded<Compared>,
+    variance_of_guides: Padded<Compared>,
     width: usize,
     height: usize,
 }
@@ -84,14 +102,13 @@ struct By {
 const PAD: usize = WINDOW + PATCH;
 
 /// A picture with edges around it that repeat its own.
-#[derive(Clone)]
-struct Padded {
-    pixels: Vec<[f32; 4]>,
+struct Padded<T> {
+    pixels: Vec<T>,
     stride: usize,
 }
 
-impl Padded {
-    fn of(picture: &[[f32; 4]], width: usize, height: usize) -> Self {
+impl<T: Copy> Padded<T> {
+    fn of(picture: &[T], [width, height]: [usize; 2]) -> Self {
         let held = |i: usize, side: usize| i.saturating_sub(PAD).min(side - 1);
         let rows = 0..height + 2 * PAD;
         let row = |y: usize| &picture[held(y, height) * width..][..width];
@@ -104,7 +121,7 @@ impl Padded {
     }
 
     /// Of a row of the picture with so many pixels before its first, that many and more.
-    fn row(&self, y: usize, before: usize, count: usize) -> &[[f32; 4]] {
+    fn row(&self, y: usize, before: usize, count: usize) -> &[T] {
         &self.pixels[y * self.stride + before..][..count]
     }
 }
@@ -120,8 +137,8 @@ impl By {
         };
         let mut sums = vec![[0.0_f32; 4]; band.len()];
         let mut weights = vec![0.0_f32; band.len()];
-        let mut in_rows = vec![0.0_f32; (rows + 2 * PATCH) * width];
-        let mut in_patches = vec![0.0_f32; width];
+        let mut in_rows = vec![[0.0_f32; FEATURES]; (rows + 2 * PATCH) * width];
+        let mut in_patches = vec![[0.0_f32; FEATURES]; width];
         for shift in 0..SIDE * SIDE {
             let [across, down] = [shift % SIDE, shift / SIDE];
             for (y, sums) in in_rows.chunks_mut(width).enumerate() {
@@ -134,15 +151,16 @@ impl By {
                     continue;
                 }
                 let other = &of[(other_y - WINDOW) * width..][..width];
-                in_patches.fill(0.0);
+                in_patches.fill([0.0; FEATURES]);
                 for row in in_rows[y * width..].chunks(width).take(TAPS) {
                     for (sum, distance) in in_patches.iter_mut().zip(row) {
-                        *sum += distance;
+                        *sum = std::array::from_fn(|f| sum[f] + distance[f]);
                     }
                 }
                 let seen = WINDOW.saturating_sub(across)..width.min(width + WINDOW - across);
                 for x in seen {
-                    let apart = in_patches[x].max(0.0) * (1.0 / (TAPS * TAPS) as f32);
+                    let [color, albedo, normal, depth] = in_patches[x].map(|d| d.max(0.0));
+                    let apart = ((color + albedo) + (normal + depth)) / (TAPS * TAPS) as f32;
                     if apart > MOST_APART {
                         continue;
                     }
@@ -169,13 +187,17 @@ impl By {
 
     /// Of each pixel of row `y`, from [`PATCH`] rows before the picture on, to the one a shift away, the sum over a row of
     /// its patch.
-    fn set_distances(&self, y: usize, [across, down]: [usize; 2], sums: &mut [f32]) {
+    fn set_distances(&self, y: usize, [across, down]: [usize; 2], sums: &mut [[f32; FEATURES]]) {
         let count = self.width + 2 * PATCH;
         let colors = self.colors.row(y + WINDOW, WINDOW, count);
         let variance = self.variance.row(y + WINDOW, WINDOW, count);
         let other_colors = self.colors.row(y + down, across, count);
         let other_variance = self.variance.row(y + down, across, count);
-        let mut last = [0.0_f32; TAPS];
+        let guides = self.guides.row(y + WINDOW, WINDOW, count);
+        let of_guides = self.variance_of_guides.row(y + WINDOW, WINDOW, count);
+        let other_guides = self.guides.row(y + down, across, count);
+        let of_other_guides = self.variance_of_guides.row(y + down, across, count);
+        let mut last = [[0.0_f32; FEATURES]; TAPS];
         for i in 0..count {
             let (p, q) = (colors[i], other_colors[i]);
             let (v, w) = (variance[i], other_variance[i]);
@@ -183,9 +205,15 @@ impl By {
                 let apart = (p[c] - q[c]) * (p[c] - q[c]) - (v[c] + v[c].min(w[c]));
                 apart / (LEAST + STRENGTH * STRENGTH * (v[c] + w[c]))
             });
-            last[i % TAPS] = 0.25 * ((of[0] + of[1]) + (of[2] + of[3]));
+            let color = 0.25 * ((of[0] + of[1]) + (of[2] + of[3]));
+            let [albedo, normal, depth] = apart(
+                [&guides[i], &other_guides[i]],
+                [&of_guides[i], &of_other_guides[i]],
+            );
+            last[i % TAPS] = [color, albedo, normal, depth];
             if i >= 2 * PATCH {
-                sums[i - 2 * PATCH] = last.iter().sum();
+                sums[i - 2 * PATCH] =
+                    std::array::from_fn(|f| last.iter().map(|taps| taps[f]).sum());
             }
         }
     }
@@ -229,23 +257,96 @@ mod tests {
         (squares.sum::<f64>() / (3 * truth.len()) as f64).sqrt()
     }
 
+    /// Guides that say nothing.
+    fn none() -> Vec<Guide> {
+        vec![[[0.0; 4]; 2]; WIDTH * HEIGHT]
+    }
+
+    fn mean([a, b]: [&[[f32; 4]]; 2]) -> Vec<[f32; 4]> {
+        let pairs = a.iter().zip(b);
+        pairs
+            .map(|(a, b)| [0, 1, 2, 3].map(|c| 0.5 * (a[c] + b[c])))
+            .collect()
+    }
+
     #[test]
     fn noise_falls_and_edges_stay() {
         let halves = [1, 2].map(|seed| noisy(seed, 0.3));
-        let [a, b] = [&halves[0][..], &halves[1]];
-        let mean: Vec<[f32; 4]> = a
-            .iter()
-            .zip(b)
-            .map(|(a, b)| [0, 1, 2, 3].map(|c| 0.5 * (a[c] + b[c])))
-            .collect();
-        let (before, after) = (error(&mean), error(&denoised([a, b], WIDTH)));
+        let (halves, none) = ([&halves[0][..], &halves[1]], none());
+        let found = denoised(halves, [&none; 2], WIDTH);
+        let (before, after) = (error(&mean(halves)), error(&found));
         assert!(after < 0.35 * before, "{before} {after}");
     }
 
     #[test]
     fn a_picture_without_noise_stays_as_it_is() {
         let picture = noisy(0, 0.0);
-        assert_eq!(denoised([&picture, &picture], WIDTH), picture);
+        // Whatever its guides say.
+        let guides = [3, 4].map(|seed| guides(seed, 0.2, 1.0));
+        assert_eq!(
+            denoised([&picture, &picture], [&guides[0], &guides[1]], WIDTH),
+            picture
+        );
+        let none = none();
+        assert_eq!(denoised([&picture, &picture], [&none; 2], WIDTH), picture);
+    }
+
+    /// The square of [`noisy`] by its albedo, its normal and its depth, each as much as this, with even noise of this width.
+    fn guides(seed: u32, noise: f32, contrast: f32) -> Vec<Guide> {
+        let pixel = |i: usize| {
+            let (x, y) = (i % WIDTH, i / WIDTH);
+            let is_in = (10..25).contains(&x) && (8..20).contains(&y);
+            let base = if is_in { contrast } else { 0.0 };
+            let numbers = random_numbers::<f32>([i as u32, seed, 0, 7]);
+            let [r, g, b, d] = numbers.map(|n| noise * (n - 0.5));
+            let albedo = [0.3 + 0.5 * base + r, 0.4 + g, 0.5 + b, 1.0];
+            [albedo, [0.0, base, 1.0 - base, 50.0 + 3.0 * base + d]]
+        };
+        (0..WIDTH * HEIGHT).map(pixel).collect()
+    }
+
+    /// A step in what is seen that noise hides in the colours: guides keep it, and without them it is washed out.
+    #[test]
+    fn guides_keep_a_step_that_colours_hide() {
+        // Twice as much noise as the step is high in its strongest colour.
+        let halves = [1, 2].map(|seed| noisy(seed, 1.4));
+        let halves = [&halves[0][..], &halves[1]];
+        let with = |contrast| {
+            let own = [3, 4].map(|seed| guides(seed, 0.1, contrast));
+            denoised(halves, [&own[0], &own[1]], WIDTH)
+        };
+        let [without, guided] = [0.0, 1.0].map(with);
+        // Red beside the edge, three pixels on either side: .8 and .1.
+        let red = |picture: &[[f32; 4]], columns: std::ops::Range<usize>| {
+            let all = (10..18).flat_map(|y| columns.clone().map(move |x| y * WIDTH + x));
+            all.map(|i| picture[i][0]).sum::<f32>() / (8 * columns.len()) as f32
+        };
+        let step = |picture: &[[f32; 4]]| red(picture, 10..13) - red(picture, 7..10);
+        let (lost, kept) = (0.7 - step(&without), 0.7 - step(&guided));
+        println!("{lost} {kept} {} {}", error(&without), error(&guided));
+        assert!(kept.abs() < 0.5 * lost, "{kept} {lost}");
+        assert!(error(&guided) < 0.75 * error(&without));
+    }
+
+    /// Each of them by itself.
+    #[test]
+    fn albedo_normal_and_depth_each_keep_the_step() {
+        let halves = [1, 2].map(|seed| noisy(seed, 1.4));
+        let halves = [&halves[0][..], &halves[1]];
+        let of = |keep: &dyn Fn(Guide) -> Guide| {
+            let own = [3, 4].map(|seed| guides(seed, 0.1, 1.0));
+            let own = own.map(|half| half.into_iter().map(keep).collect::<Vec<_>>());
+            error(&denoised(halves, [&own[0], &own[1]], WIDTH))
+        };
+        let flat = |_: Guide| [[0.5, 0.5, 0.5, 1.0], [0.0, 0.0, 1.0, 50.0]];
+        let without = of(&flat);
+        let albedo = of(&|g| [g[0], flat(g)[1]]);
+        let normal = of(&|g| [flat(g)[0], [g[1][0], g[1][1], g[1][2], 50.0]]);
+        let depth = of(&|g| [flat(g)[0], [0.0, 0.0, 1.0, g[1][3]]]);
+        println!("{without} {albedo} {normal} {depth}");
+        for with in [albedo, normal, depth] {
+            assert!(with < 0.8 * without, "{with} {without}");
+        }
     }
 
     #[test]
@@ -255,7 +356,12 @@ mod tests {
             numbers.map(|n| n.map(|n| n + 1.0)).collect()
         };
         let halves = [1, 2].map(even);
-        let found = denoised([&halves[0], &halves[1]], 64);
+        // Guides with noise of their own, of which colours know nothing.
+        let guide = |n: &[f32; 4]| [[n[2], n[0], n[3], 1.0], [n[1], n[3], 0.0, n[0]]];
+        let guides = [3, 4]
+            .map(even)
+            .map(|half| half.iter().map(guide).collect::<Vec<_>>());
+        let found = denoised([&halves[0], &halves[1]], [&guides[0], &guides[1]], 64);
         for c in 0..4 {
             let mean = found.iter().map(|p| f64::from(p[c])).sum::<f64>() / 4096.0;
             // Of 8192 even numbers, four standard errors.

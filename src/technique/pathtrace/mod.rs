@@ -9,6 +9,7 @@
 
 mod denoise;
 mod elementary;
+mod guides;
 mod lamp;
 mod layers;
 mod levels;
@@ -24,6 +25,7 @@ mod walk;
 
 pub(crate) use denoise::denoised;
 pub(crate) use elementary::turn_of;
+pub(crate) use guides::{GUIDE_IMAGES, Guide, guide_of};
 pub use lamp::{Lamp, LampShape};
 pub(crate) use layers::{PATH_IMAGES, PathMeans, images_of, numbers_of};
 pub(crate) use phase::phase_value;
