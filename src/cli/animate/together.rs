@@ -40,7 +40,7 @@ impl Together {
             scene.channels.channels.clear();
             scene.input.component = None;
         }
-        if let Some(lines) = first.lines() {
+        if let Some(lines) = first.lines().filter(|_| scene.flow.flow.is_some()) {
             scene
                 .flow_style
                 .flow_range

@@ -126,8 +126,8 @@ pub struct FlowFlags {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flow: Option<FlowWord>,
     /// Where lines begin: even[:D] lines that keep a distance, grid:NX,NY,NZ, random:N[,SEED], plane:x|y|z=V,N (N times N),
-    /// rake:X,Y,Z,X,Y,Z,N, where:VAR>V,N, or a file .csv of x,y,z[,t] or lon,lat,height|pressure[,t] [default: even; of
-    /// particles random:200]
+    /// rake:X,Y,Z,X,Y,Z,N, where:VAR>V,N, or a file .csv of x,y,z[,t] or lon,lat,height|pressure|level[,t]
+    /// [default: even; of particles random:200]
     #[arg(
         long,
         value_name = "SEEDS",

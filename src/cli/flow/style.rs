@@ -32,7 +32,8 @@ pub struct FlowStyleFlags {
     #[arg(long, value_name = "T", value_parser = duration, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub comet_time: Option<f64>,
-    /// Width of lines in pixels, where the camera is turned to [default: 3, of the heads of comets 6]
+    /// Width of lines in pixels, where the camera is turned to, up to an eighth of the height of the picture
+    /// [default: 3, of the heads of comets 6]
     #[arg(long, value_name = "PX", value_parser = width, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flow_width: Option<f64>,
