@@ -213,9 +213,11 @@ fn a_lens_is_focused_on_what_the_middle_shows() {
     ran.assert_done();
     assert!((said(&ran) - 23.5).abs() < 1e-3, "{}", ran.err);
     // Nothing is there: the target stays.
-    let ran = folder.run(&format!(
-        "{words} --focus-distance auto --target=-20,3.5,30 -o c.npy"
-    ));
+    let up = words.replace(
+        "--target 3.5,3.5,3.5 --up 0,0,1",
+        "--target=-20,3.5,30 --up 1,0,0",
+    );
+    let ran = folder.run(&format!("{up} --focus-distance auto -o c.npy"));
     ran.assert_done();
     assert!(ran.err.contains("the middle shows nothing"), "{}", ran.err);
     let film = words.replace("render", "animate");
@@ -234,7 +236,7 @@ fn a_lens_is_focused_on_what_the_middle_shows() {
 #[test]
 fn films_have_layers_of_paths() {
     let folder = Folder::new();
-    let of = "phantom:head,n=16 --look plain --technique pathtrace --size 24x20 --spp 4";
+    let of = "phantom:head,n=16 --look plain --technique pathtrace --surface-scattering 8 --size 24x20 --spp 4";
     let layers = "--aov albedo,normal,depth,direct,indirect,bounces,noise --denoise-picture";
     folder
         .run(&format!(
