@@ -1,4 +1,5 @@
-/* Stream lines through a volume: a field of velocities is followed, its lines become tubes, and the volume ends at them.
+/* Stream lines through a volume: a field of velocities is followed, its lines become tubes, and the volume ends at them. A title, a
+ * bar of colours and a scale lie over the picture.
  *
  *     make capi
  *     cc -Iinclude examples/lines.c -Ltarget/release -lstratavox -lvulkan -lm -o lines
@@ -108,6 +109,36 @@ static void begin_rendering(const host *h, VkCommandBuffer cmd, VkImageView dept
     vkCmdBeginRendering(cmd, &info);
 }
 
+static double linear_of(uint8_t code) {
+    const double c = code / 255.0;
+    return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
+}
+static uint8_t code_of(double c) {
+    return (uint8_t)(255.0 * (c <= 0.0031308 ? 12.92 * c : 1.055 * pow(c, 1.0 / 2.4) - 0.055) + 0.5);
+}
+
+/* Words and marks over the picture. A host that draws many frames has them in a texture, until the camera moves. */
+static void annotate(sv_device device, const sv_camera *camera, const sv_volume_desc *volume, sv_transfer_function function) {
+    static float marks[HEIGHT][WIDTH][4];
+    sv_overlay_desc words = {.struct_size = sizeof words,
+                             .width = WIDTH,
+                             .height = HEIGHT,
+                             .camera = camera,
+                             .marks = "bar,scale,axes,title=Lines in a ball",
+                             .dims = {VOXELS, VOXELS, VOXELS},
+                             .function = function,
+                             .caption = "Fog",
+                             .length_metres = 1e-3};
+    memcpy(words.world_from_voxel, volume->world_from_voxel, sizeof words.world_from_voxel);
+    check(sv_overlay_rgba(device, &words, &marks[0][0][0], sizeof marks / sizeof(float), &diagnostic));
+    for (int y = 0; y < HEIGHT; ++y)
+        for (int x = 0; x < WIDTH; ++x)
+            for (int c = 0; c < 3; ++c) {
+                const double under = linear_of(texels[y][x][c]);
+                texels[y][x][c] = code_of(marks[y][x][c] + (1.0 - marks[y][x][3]) * under);
+            }
+}
+
 int main(int count, char **arguments) {
     const char *path = count > 1 ? arguments[1] : "lines.ppm";
     host h;
@@ -193,6 +224,7 @@ int main(int count, char **arguments) {
     host_submit_and_wait(&h, cmd);
     host_texels(&h, &texels[0][0][0]);
 
+    annotate(device, &camera, &described, function);
     check(sv_device_destroy(device, &diagnostic));
     host_free_depth(&h, depth);
     const unsigned messages = host_close(&h);

@@ -695,133 +695,6 @@ typedef struct sv_trace_desc {
 // Lines that follow a field: in memory of the host's alone. 0 is none.
 typedef uint64_t sv_lines;
 
-// Pictures of one volume in a host's frames. 0 is none.
-typedef uint64_t sv_renderer;
-
-// The state of an image at one moment. All zero of `before`: what it holds is given up.
-// All zero of `after`: as rendering leaves it, in `VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL`.
-typedef struct sv_image_state {
-    // `VkImageLayout`.
-    uint32_t layout;
-    // Not 0: `queue_family` owns the image before or after, and ownership goes from one to the other.
-    uint32_t has_queue_family;
-    // Bits of `VkPipelineStageFlags2`.
-    uint64_t stage;
-    // Bits of `VkAccessFlags2`.
-    uint64_t access;
-    // Of the queues that own the image.
-    uint32_t queue_family;
-    // 0.
-    uint32_t reserved;
-} sv_image_state;
-
-// An image of the host's that is drawn into: one level, one layer, one sample.
-typedef struct sv_target {
-    // `sizeof(sv_target)`.
-    uint32_t struct_size;
-    // NULL.
-    const void *next;
-    // `VkImage`.
-    uint64_t image;
-    // `VkImageView` of it, 2D.
-    uint64_t view;
-    // `VkFormat` of the view.
-    uint32_t format;
-    // Pixels across.
-    uint32_t width;
-    // Pixels down.
-    uint32_t height;
-    // Not 0: `clear_color` goes over all of it first.
-    uint32_t is_cleared;
-    // Red, green, blue and alpha, premultiplied.
-    float clear_color[4];
-    // How it arrives.
-    struct sv_image_state before;
-    // How it leaves.
-    struct sv_image_state after;
-} sv_target;
-
-// Command buffers for frames that the library submits. 0 is none.
-typedef uint64_t sv_submitter;
-
-// A timeline semaphore of the host's, and one of its values.
-typedef struct sv_timeline_point {
-    // `VkSemaphore`, of type timeline.
-    uint64_t semaphore;
-    // Its value.
-    uint64_t value;
-} sv_timeline_point;
-
-// When a submission begins and what it reaches.
-typedef struct sv_submission {
-    // `sizeof(sv_submission)`.
-    uint32_t struct_size;
-    // NULL.
-    const void *next;
-    // `VkQueue`, of the device's family.
-    void *queue;
-    // Called before the queue is used, or NULL where nobody else uses it. It calls no function of this header.
-    void (*lock)(void *user);
-    // Called after that; NULL where `lock` is.
-    void (*unlock)(void *user);
-    // What both are called with.
-    void *user;
-    // It begins when all of them are reached.
-    const struct sv_timeline_point *waits;
-    // How many there are.
-    uint64_t wait_count;
-    // All of them are reached when it is done.
-    const struct sv_timeline_point *signals;
-    // How many there are.
-    uint64_t signal_count;
-} sv_submission;
-
-// How long the submissions of a frame, an upload or an update last, and who hears of them.
-typedef struct sv_pacing {
-    // `sizeof(sv_pacing)`.
-    uint32_t struct_size;
-    // NULL.
-    const void *next;
-    // Milliseconds that a submission shall take. 0 is 100.
-    double target_ms;
-    // Called after each submission but the last with how much is done, 0 to 1; not 0 ends it. Or NULL.
-    // It calls no function of this header.
-    uint32_t (*tell)(void *user, double done);
-    // What `tell` is called with.
-    void *user;
-} sv_pacing;
-
-// A volume on a device. 0 is none.
-typedef uint64_t sv_volume;
-
-// New voxels on their way into a volume. 0 is none.
-typedef uint64_t sv_update;
-
-// What lies under a pixel: where a composite has become half opaque, the first surface, the place of a maximum.
-typedef struct sv_pick {
-    // `sizeof(sv_pick)`.
-    uint32_t struct_size;
-    // NULL.
-    const void *next;
-    // 0: nothing is there, and all that follows is 0.
-    uint32_t is_hit;
-    // 0: MIDA and slabs have no value.
-    uint32_t has_value;
-    // 0: projecting modes have no colour yet, and slices none beside their depth.
-    uint32_t has_color;
-    // 0.
-    uint32_t reserved;
-    // World length from where the ray starts.
-    double distance;
-    // The place in the world.
-    double position[3];
-    // The projected value, that of the surface, or of the sample that made a composite half opaque; of a map of labels
-    // the label.
-    double value;
-    // Premultiplied colour and alpha.
-    float color[4];
-} sv_pick;
-
 // What is behind it is cut away: world points with `normal . x < offset`.
 typedef struct sv_clip_plane {
     // Of any length but 0.
@@ -964,6 +837,188 @@ typedef struct sv_settings {
     // SV_TECHNIQUE_PATHTRACE: what it traces, under `lights`; or NULL.
     const struct sv_path_tracing *paths;
 } sv_settings;
+
+// What is drawn over a picture, and what is known of the volume in it.
+typedef struct sv_overlay_desc {
+    // `sizeof(sv_overlay_desc)`.
+    uint32_t struct_size;
+    // NULL.
+    const void *next;
+    // Pixels across: 1 to 16384.
+    uint32_t width;
+    // Pixels down.
+    uint32_t height;
+    // Who looks, as in sv_frame_info.
+    const struct sv_camera *camera;
+    // Which marks, as `--annotate` of the program has them: "bar,scale,title=Storm". NULL: "bar,time,orientation,scale".
+    const char *marks;
+    // How many voxels there are along x, y and z: 1 or more of each.
+    uint32_t dims[3];
+    // Not 0: x of the world points right, y to the front and z to the head of a patient.
+    uint32_t is_patient;
+    // As in sv_volume_desc. All zero: voxel space is the world.
+    double world_from_voxel[16];
+    // Whose colours the bar has. 0: there is no bar.
+    sv_transfer_function function;
+    // What was computed, or NULL, as in sv_renderer_desc: a bar is as opaque as its mode makes values.
+    const struct sv_settings *settings;
+    // What the values are, or NULL. These four are UTF-8; letters that cannot be drawn are boxes.
+    const char *caption;
+    // Their unit, or NULL.
+    const char *unit;
+    // The moment, or NULL: "2005-08-28T12:00:00" is written as a date.
+    const char *time;
+    // Where the volume is from, or NULL.
+    const char *source;
+    // Not 0: x of the world points east, y north and z up.
+    uint32_t is_earth;
+    // Not 0: the values along the bar are spread by their logarithms.
+    uint32_t is_logarithmic;
+    // Metres of a unit of the world. 0: not known, and there is no unit at the scale.
+    double length_metres;
+    // How much higher than it is the volume is drawn. 0 is 1.
+    double height_factor;
+    // Pixels of an em. 0: a fortieth of the height, 11 at least.
+    double text_pixels;
+    // What lies under the marks, which are light or dark by it: four numbers a pixel, linear light times opacity, rows from
+    // the top. NULL: black. It is read before the call returns.
+    const float *under;
+    // How many numbers there are.
+    uint64_t under_count;
+    // Not 0: the marks have this colour.
+    uint32_t has_color;
+    // 0.
+    uint32_t reserved;
+    // sRGB, 0 to 1.
+    double color[3];
+} sv_overlay_desc;
+
+// Pictures of one volume in a host's frames. 0 is none.
+typedef uint64_t sv_renderer;
+
+// The state of an image at one moment. All zero of `before`: what it holds is given up.
+// All zero of `after`: as rendering leaves it, in `VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL`.
+typedef struct sv_image_state {
+    // `VkImageLayout`.
+    uint32_t layout;
+    // Not 0: `queue_family` owns the image before or after, and ownership goes from one to the other.
+    uint32_t has_queue_family;
+    // Bits of `VkPipelineStageFlags2`.
+    uint64_t stage;
+    // Bits of `VkAccessFlags2`.
+    uint64_t access;
+    // Of the queues that own the image.
+    uint32_t queue_family;
+    // 0.
+    uint32_t reserved;
+} sv_image_state;
+
+// An image of the host's that is drawn into: one level, one layer, one sample.
+typedef struct sv_target {
+    // `sizeof(sv_target)`.
+    uint32_t struct_size;
+    // NULL.
+    const void *next;
+    // `VkImage`.
+    uint64_t image;
+    // `VkImageView` of it, 2D.
+    uint64_t view;
+    // `VkFormat` of the view.
+    uint32_t format;
+    // Pixels across.
+    uint32_t width;
+    // Pixels down.
+    uint32_t height;
+    // Not 0: `clear_color` goes over all of it first.
+    uint32_t is_cleared;
+    // Red, green, blue and alpha, premultiplied.
+    float clear_color[4];
+    // How it arrives.
+    struct sv_image_state before;
+    // How it leaves.
+    struct sv_image_state after;
+} sv_target;
+
+// Command buffers for frames that the library submits. 0 is none.
+typedef uint64_t sv_submitter;
+
+// A timeline semaphore of the host's, and one of its values.
+typedef struct sv_timeline_point {
+    // `VkSemaphore`, of type timeline.
+    uint64_t semaphore;
+    // Its value.
+    uint64_t value;
+} sv_timeline_point;
+
+// When a submission begins and what it reaches.
+typedef struct sv_submission {
+    // `sizeof(sv_submission)`.
+    uint32_t struct_size;
+    // NULL.
+    const void *next;
+    // `VkQueue`, of the device's family.
+    void *queue;
+    // Called before the queue is used, or NULL where nobody else uses it. It calls no function of this header.
+    void (*lock)(void *user);
+    // Called after that; NULL where `lock` is.
+    void (*unlock)(void *user);
+    // What both are called with.
+    void *user;
+    // It begins when all of them are reached.
+    const struct sv_timeline_point *waits;
+    // How many there are.
+    uint64_t wait_count;
+    // All of them are reached when it is done.
+    const struct sv_timeline_point *signals;
+    // How many there are.
+    uint64_t signal_count;
+} sv_submission;
+
+// How long the submissions of a frame, an upload or an update last, and who hears of them.
+typedef struct sv_pacing {
+    // `sizeof(sv_pacing)`.
+    uint32_t struct_size;
+    // NULL.
+    const void *next;
+    // Milliseconds that a submission shall take. 0 is 100.
+    double target_ms;
+    // Called after each submission but the last with how much is done, 0 to 1; not 0 ends it. Or NULL.
+    // It calls no function of this header.
+    uint32_t (*tell)(void *user, double done);
+    // What `tell` is called with.
+    void *user;
+} sv_pacing;
+
+// A volume on a device. 0 is none.
+typedef uint64_t sv_volume;
+
+// New voxels on their way into a volume. 0 is none.
+typedef uint64_t sv_update;
+
+// What lies under a pixel: where a composite has become half opaque, the first surface, the place of a maximum.
+typedef struct sv_pick {
+    // `sizeof(sv_pick)`.
+    uint32_t struct_size;
+    // NULL.
+    const void *next;
+    // 0: nothing is there, and all that follows is 0.
+    uint32_t is_hit;
+    // 0: MIDA and slabs have no value.
+    uint32_t has_value;
+    // 0: projecting modes have no colour yet, and slices none beside their depth.
+    uint32_t has_color;
+    // 0.
+    uint32_t reserved;
+    // World length from where the ray starts.
+    double distance;
+    // The place in the world.
+    double position[3];
+    // The projected value, that of the surface, or of the sample that made a composite half opaque; of a map of labels
+    // the label.
+    double value;
+    // Premultiplied colour and alpha.
+    float color[4];
+} sv_pick;
 
 // Voxels, x fastest, then y, then z. `value = slope stored + intercept`.
 typedef struct sv_volume_desc {
@@ -1224,6 +1279,15 @@ sv_status sv_lines_cause(sv_lines lines, uint64_t line, uint32_t *causes, struct
 
 // Forgets the lines. Threads: any.
 sv_status sv_lines_destroy(sv_lines lines, struct sv_diagnostic *diagnostic);
+
+// Draws words and marks as pixels of their own: linear light times opacity, four numbers each, rows from the top, to be laid over
+// the picture (`over + (1 - opacity) under`). `count` numbers have room at `pixels`: 4 times width times height.
+// Edges of a box that lie behind the volume are left out. Nothing is done on the device. Threads: any.
+sv_status sv_overlay_rgba(sv_device device,
+                          const struct sv_overlay_desc *desc,
+                          float *pixels,
+                          uint64_t count,
+                          struct sv_diagnostic *diagnostic);
 
 // Begins a frame that is recorded in parts, and tells how many pieces it has: blocks of 64 x 64 pixels, smaller where
 // those are thought to take long, slices of half-angle slicing, and what a new function has to be found empty. What

@@ -175,7 +175,7 @@
 //! touched by `format`, `picture` and `transfer/file.rs`, by the program, and by `gpu/cache.rs`, which keeps
 //! compiled pipelines. There is no global state. The same inputs give the same bytes.
 
-#[cfg(feature = "png")]
+#[cfg(feature = "annotate")]
 pub mod annotate;
 #[doc(hidden)]
 pub mod blue_noise;
@@ -192,7 +192,7 @@ pub mod conformance;
 pub mod embed;
 #[cfg(feature = "files")]
 mod fence;
-#[cfg(feature = "png")]
+#[cfg(feature = "annotate")]
 #[cfg_attr(
     not(feature = "cli"),
     allow(

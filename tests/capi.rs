@@ -297,7 +297,11 @@ fn a_host_in_c_follows_lines_and_a_volume_ends_at_their_tubes() {
     let is_fog = |[r, g, b]: &&[u8; 3]| r.abs_diff(*g) < 12 && g.abs_diff(*b) < 16 && *g > 120;
     let tubes = pixels.iter().filter(is_tube).count();
     let fog = pixels.iter().filter(is_fog).count();
-    println!("{tubes} pixels of tubes, {fog} of the ball alone");
+    // The title in the upper left, white on the dark.
+    let rows = (0..30).flat_map(|y| &pixels[320 * y..320 * y + 200]);
+    let words = rows.filter(|pixel| pixel.iter().all(|&c| c > 200)).count();
+    println!("{tubes} pixels of tubes, {fog} of the ball alone, {words} of words");
+    assert!(words > 60, "{words}");
     assert!(tubes > 4000 && fog > 500, "{tubes} and {fog}");
 }
 

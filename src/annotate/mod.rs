@@ -24,10 +24,12 @@ pub use facts::{Facts, caption, unit};
 pub use geometry::{ColorLegend, GeometryLegend};
 pub use marks::Marks;
 
+#[cfg(feature = "files")]
+use crate::picture::{Layer, LayerKind, PictureFormat};
 use crate::{
     camera::Camera,
     figure::{Anchor, linear_pixels, short},
-    picture::{Layer, LayerKind, Picture, PictureFormat},
+    picture::Picture,
     scene::Beside,
     technique::{Mode, Role, Settings},
     transfer::{Classified, TransferFunction, Window},
@@ -112,6 +114,7 @@ impl Annotation {
     }
 
     /// Draws over a picture that has its background, or adds a layer, as its file will have it.
+    #[cfg(feature = "files")]
     pub fn put(
         &self,
         picture: &mut Picture,
@@ -131,6 +134,7 @@ impl Annotation {
     }
 
     /// Linear light, premultiplied.
+    #[cfg(feature = "files")]
     fn pixels(
         &self,
         picture: &Picture,

@@ -25,6 +25,7 @@ mod handles;
 mod host;
 mod images;
 mod lines;
+mod overlay;
 mod parts;
 mod paths;
 mod pick;
@@ -60,6 +61,7 @@ pub use lines::{
     sv_cause, sv_direction, sv_line_kind, sv_lines, sv_lines_breaks, sv_lines_cause,
     sv_lines_count, sv_lines_destroy, sv_lines_positions, sv_lines_values, sv_trace, sv_trace_desc,
 };
+pub use overlay::{sv_overlay_desc, sv_overlay_rgba};
 pub use parts::{
     sv_pacing, sv_renderer_begin_parts, sv_renderer_record_part_into, sv_submitter_submit_in_parts,
     sv_submitter_update_in_parts, sv_submitter_upload_in_parts,

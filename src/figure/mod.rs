@@ -5,14 +5,18 @@ mod axis;
 mod font;
 mod letters;
 mod raster;
+#[cfg(feature = "png")]
 mod svg;
 
 pub use axis::{Ticks, log_ticks, short};
 pub use font::{letter_lacking, strokes};
-pub use raster::{SCALE, linear_pixels, png};
+pub use raster::linear_pixels;
+#[cfg(feature = "png")]
+pub use raster::{SCALE, png};
 
 /// The thickness of letters, in em.
 pub const LETTER_WIDTH: f64 = raster::LETTER_WIDTH;
+#[cfg(feature = "png")]
 pub use svg::svg;
 
 /// A point of a figure: x to the right, y down.

@@ -3,6 +3,7 @@
 
 use super::{Anchor, Color, Figure, Mark, Point, font};
 use crate::color::decode_srgb;
+#[cfg(feature = "png")]
 use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
 
 /// Pixels across a unit of a figure.
@@ -13,6 +14,7 @@ const SUBLINES: usize = 4;
 pub(super) const LETTER_WIDTH: f64 = 0.09;
 
 /// The bytes of a PNG file.
+#[cfg(feature = "png")]
 pub fn png(figure: &Figure) -> Vec<u8> {
     let canvas = Canvas::of(figure, SCALE, [255_u8; 3]);
     let extent = [canvas.width, canvas.height].map(|n| n as u32);
@@ -20,6 +22,7 @@ pub fn png(figure: &Figure) -> Vec<u8> {
 }
 
 /// The bytes of a PNG file of these pixels.
+#[cfg(feature = "png")]
 pub fn encode_rgb([width, height]: [u32; 2], rgb: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::new();
     PngEncoder::new(&mut bytes)

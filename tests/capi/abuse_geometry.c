@@ -1,4 +1,4 @@
-/* Fields that are none, lines that are not there, shapes that cannot be drawn. */
+/* Fields that are none, lines that are not there, shapes and marks that cannot be drawn. */
 #include "abuse.h"
 
 enum { SIDE = 4 };
@@ -204,8 +204,110 @@ static void shapes(void) {
     BAD(SV_E_ARGUMENT, sv_geometry_destroy(made, &diagnostic));
 }
 
+enum { ACROSS = 160, DOWN = 120, NUMBERS = ACROSS * DOWN * 4 };
+static float marks[NUMBERS];
+
+static sv_overlay_desc overlay_desc(sv_transfer_function colors) {
+    const sv_overlay_desc made = {.struct_size = sizeof made,
+                                  .width = ACROSS,
+                                  .height = DOWN,
+                                  .marks = "bar,time,scale,axes,box,title=Storm",
+                                  .dims = {VOXELS, VOXELS, VOXELS},
+                                  .function = colors,
+                                  .caption = "Vapour",
+                                  .unit = "g kg-1",
+                                  .time = "2005-08-28T12:00:00",
+                                  .length_metres = 1000.0};
+    return made;
+}
+static sv_status with_overlay(sv_overlay_desc desc) { return sv_overlay_rgba(device, &desc, marks, NUMBERS, &diagnostic); }
+
+/* How many pixels are covered; -1 where one is no colour. */
+static int covered(void) {
+    int found = 0;
+    for (int k = 0; k < NUMBERS; k += 4) {
+        const float a = marks[k + 3];
+        for (int c = 0; c < 4; ++c)
+            if (!(marks[k + c] >= 0.0f && marks[k + c] <= a + 1e-6f && a <= 1.0f)) return -1;
+        found += a > 0.5f;
+    }
+    return found;
+}
+static void is_covered(int least, int most, const char *what) {
+    const int found = covered();
+    if (found < least || found > most) failures += 1, fprintf(stderr, "FAILED: %s covers %d pixels\n", what, found);
+}
+
+static void overlay(void) {
+    const sv_color_point colors[] = {{0.0, {0.0, 0.2, 1.0}}, {2.0, {1.0, 0.4, 0.0}}};
+    const sv_opacity_point opacities[] = {{0.0, 0.0}, {2.0, 0.5}};
+    const sv_transfer_function_desc points = {.struct_size = sizeof points,
+                                              .colors = colors,
+                                              .color_count = 2,
+                                              .opacities = opacities,
+                                              .opacity_count = 2};
+    sv_transfer_function ramp = 0;
+    GOOD(sv_transfer_function_create(device, &points, &ramp, &diagnostic));
+    const sv_overlay_desc start = overlay_desc(ramp);
+    static float light[NUMBERS];
+    for (int k = 0; k < NUMBERS; ++k) light[k] = 1.0f;
+#define with with_overlay
+    WITH(sv_overlay_desc, start, width, 0, SV_E_ARGUMENT);
+    WITH(sv_overlay_desc, start, width, 16385, SV_E_LIMIT);
+    WITH(sv_overlay_desc, start, height, DOWN - 1, SV_E_ARGUMENT);
+    WITH(sv_overlay_desc, start, height, UINT32_MAX, SV_E_LIMIT);
+    WITH(sv_overlay_desc, start, dims[1], 0, SV_E_ARGUMENT);
+    WITH(sv_overlay_desc, start, world_from_voxel[5], NAN, SV_E_ARGUMENT);
+    WITH(sv_overlay_desc, start, length_metres, -1.0, SV_E_ARGUMENT);
+    WITH(sv_overlay_desc, start, height_factor, INFINITY, SV_E_ARGUMENT);
+    WITH(sv_overlay_desc, start, text_pixels, NAN, SV_E_ARGUMENT);
+    WITH(sv_overlay_desc, start, text_pixels, 1e9, SV_E_ARGUMENT);
+    WITH(sv_overlay_desc, start, color[1], 1.5, SV_E_ARGUMENT);
+    WITH(sv_overlay_desc, start, reserved, 1, SV_E_ARGUMENT);
+    WITH(sv_overlay_desc, start, under_count, NUMBERS, SV_E_ARGUMENT);
+    WITH(sv_overlay_desc, start, function, 77, SV_E_ARGUMENT);
+    WITH(sv_overlay_desc, start, caption, "\xff", SV_E_ARGUMENT);
+    WITH(sv_overlay_desc, start, is_logarithmic, 1, SV_E_ARGUMENT);
+    sv_overlay_desc wrong = start;
+    wrong.under = light, wrong.under_count = NUMBERS - 4;
+    NAMED(SV_E_ARGUMENT, "under_count", with(wrong));
+    wrong = start, wrong.marks = "barr";
+    NAMED(SV_E_ARGUMENT, "sv_overlay_desc.marks", with(wrong));
+    wrong = start, wrong.marks = "title=\xd0\x96";
+    NAMED(SV_E_ARGUMENT, "no letter", with(wrong));
+    BAD(SV_E_ARGUMENT, sv_overlay_rgba(device, &start, NULL, NUMBERS, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_overlay_rgba(device, NULL, marks, NUMBERS, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_overlay_rgba(0, &start, marks, NUMBERS, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_overlay_rgba(device, &start, marks, NUMBERS - 1, &diagnostic));
+    GOOD(with(start));
+    is_covered(800, NUMBERS / 8, "all marks");
+    /* Ink on the dark is light, and on the light dark. */
+    sv_overlay_desc title = start;
+    title.marks = "title=Storm";
+    float ink[2] = {0.0f, 0.0f};
+    for (int k = 0; k < 2; ++k) {
+        title.under = k ? light : NULL, title.under_count = k ? NUMBERS : 0;
+        GOOD(with(title));
+        is_covered(100, 2000, "a title");
+        /* The strokes, and not the halo around them, which lets a sixth through. */
+        float sum = 0.0f, strokes = 0.0f;
+        for (int i = 0; i < NUMBERS; i += 4)
+            if (marks[i + 3] > 0.95f) sum += marks[i], strokes += 1.0f;
+        ink[k] = sum / strokes;
+    }
+    if (!(ink[0] > 0.7f && ink[1] < 0.3f)) failures += 1, fprintf(stderr, "FAILED: ink of %g and %g\n", ink[0], ink[1]);
+    sv_overlay_desc bare = {.struct_size = sizeof bare, .width = ACROSS, .height = DOWN, .dims = {1, 1, 1}};
+    GOOD(with(bare));
+    bare.function = function;
+    GOOD(with(bare));
+#undef with
+    GOOD(sv_transfer_function_destroy(ramp, &diagnostic));
+    BAD(SV_E_ARGUMENT, with_overlay(start));
+}
+
 void abuse_geometry(void) {
     lines();
     paths();
     shapes();
+    overlay();
 }

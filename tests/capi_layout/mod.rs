@@ -35,6 +35,7 @@ pub fn asserts() -> Vec<String> {
         sv_round_cone { first, second, first_radius, second_radius, first_color, second_color }
         sv_triangle { corners, colors, reserved }
         sv_geometry_desc { struct_size, next, target, color_space, frames_in_flight, cones, cone_count, triangles, triangle_count }
+        sv_overlay_desc { struct_size, next, width, height, camera, marks, dims, is_patient, world_from_voxel, function, settings, caption, unit, time, source, is_earth, is_logarithmic, length_metres, height_factor, text_pixels, under, under_count, has_color, reserved, color }
         sv_requirement { name, wanted, found, unlocks, is_required, is_met }
         sv_color_point { value, srgb }
         sv_opacity_point { value, opacity }
