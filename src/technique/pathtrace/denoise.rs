@@ -5,27 +5,68 @@
 //! ```text
 //! v     = (a - b)^2 / 2, mean of 3 x 3                         variance of each half
 //! d^2   = mean over 5 x 5 and channels of ((b_p - b_q)^2 - (v_p + min(v_p, v_q))) / (eps + k^2 (v_p + v_q))
-//! D^2   = max(0, d^2) + sum over guides of max(0, mean over 5 x 5 of their d^2)
+//! D^2   = max(0, d^2) + sum over guides of max(0, their d^2)      of which both sides of the line count all numbers together
 //! a'(p) = sum over 15 x 15 of w a_q / sum of w                 w = exp(-D^2) by the other half
 //! ```
 //!
 //! Weights by one half filter the other, so that what is noise in both is not kept for detail. A picture without noise stays
 //! as it is. Guides ([`super::guides`]) keep apart what is lit alike and is not the same; with them colours may differ by more.
 
-use super::guides::{Compared, Guide, apart, compared};
+use super::guides::{Guide, compared};
+use std::ops::Range;
 
 const WINDOW: usize = 7;
 const SIDE: usize = 2 * WINDOW + 1;
 const PATCH: usize = 2;
 const TAPS: usize = 2 * PATCH + 1;
-/// How far pixels may differ, in standard deviations of their difference.
-const STRENGTH: f32 = 0.6;
-const LEAST: f32 = 1e-10;
 /// Pixels farther apart have no weight: it would be a thousandth.
 const MOST_APART: f32 = 6.9;
 
+/// Numbers of a pixel whose differences are added before they are compared with their variances.
+struct Together {
+    /// Which ones: colours and alpha are 0 to 3, then come those of [`Compared`](super::guides::Compared).
+    numbers: Range<usize>,
+    /// To which distance they belong: that of colours or of a guide.
+    feature: usize,
+    weight: f32,
+    /// How far pixels may differ, in standard deviations of their difference.
+    strength: f32,
+    /// Squares of differences that are none.
+    least: f32,
+}
+
 /// How far pixels are apart by their colours and by each guide.
 const FEATURES: usize = 4;
+
+const TOGETHER: [Together; 7] = [
+    color(0),
+    color(1),
+    color(2),
+    color(3),
+    guide(1, 4..7),
+    guide(2, 7..10),
+    guide(3, 10..11),
+];
+
+const fn color(channel: usize) -> Together {
+    Together {
+        numbers: channel..channel + 1,
+        feature: 0,
+        weight: 0.25,
+        strength: 0.6,
+        least: 1e-10,
+    }
+}
+
+const fn guide(feature: usize, numbers: Range<usize>) -> Together {
+    Together {
+        numbers,
+        feature,
+        weight: 1.0,
+        strength: 1.5,
+        least: 1e-3,
+    }
+}
 
 /// The mean of two pictures of `width` pixels a row, of different paths and as many, without their noise; with what guides
 /// each of them.
@@ -40,10 +81,8 @@ pub fn denoised(halves: [&[[f32; 4]]; 2], guides: [&[Guide]; 2], width: usize) -
     let variance_of_guides = variance([&guides[0], &guides[1]], size);
     let variance = variance(halves, size);
     let by = [0, 1].map(|half| By {
-        colors: Padded::of(halves[half], size),
-        variance: Padded::of(&variance, size),
-        guides: Padded::of(&guides[half], size),
-        variance_of_guides: Padded::of(&variance_of_guides, size),
+        values: [planes(halves[half], size), planes(&guides[half], size)].concat(),
+        variances: [planes(&variance, size), planes(&variance_of_guides, size)].concat(),
         width,
         height,
     });
@@ -52,10 +91,10 @@ pub fn denoised(halves: [&[[f32; 4]]; 2], guides: [&[Guide]; 2], width: usize) -
     let mut picture = vec![[0.0; 4]; a.len()];
     std::thread::scope(|scope| {
         for (i, band) in picture.chunks_mut(rows * width).enumerate() {
-            let by = &by;
+            let (by, variance) = (&by, &variance);
             scope.spawn(move || {
-                by[1].add_filtered(a, i * rows, band);
-                by[0].add_filtered(b, i * rows, band);
+                by[1].add_filtered(a, variance, i * rows, band);
+                by[0].add_filtered(b, variance, i * rows, band);
             });
         }
     });
@@ -88,61 +127,69 @@ fn variance<const N: usize>(
     (0..width * height).map(mean).collect()
 }
 
-/// What weights are made of, held beyond the edges of the picture.
-struct By {
-    colors: Padded<[f32; 4]>,
-    variance: Padded<[f32; 4]>,
-    guides: Padded<Compared>,
-    variance_of_guides: Padded<Compared>,
-    width: usize,
-    height: usize,
-}
-
 /// Beyond the edges lie as many pixels as a window and a patch reach.
 const PAD: usize = WINDOW + PATCH;
 
-/// A picture with edges around it that repeat its own.
-struct Padded<T> {
-    pixels: Vec<T>,
+/// One number of each pixel, with edges around the picture that repeat its own: rows of them are compared at once.
+#[derive(Clone)]
+struct Plane {
+    numbers: Vec<f32>,
     stride: usize,
 }
 
-impl<T: Copy> Padded<T> {
-    fn of(picture: &[T], [width, height]: [usize; 2]) -> Self {
+fn planes<const N: usize>(picture: &[[f32; N]], size: [usize; 2]) -> Vec<Plane> {
+    (0..N).map(|n| Plane::of(picture, n, size)).collect()
+}
+
+impl Plane {
+    fn of<const N: usize>(picture: &[[f32; N]], n: usize, [width, height]: [usize; 2]) -> Self {
         let held = |i: usize, side: usize| i.saturating_sub(PAD).min(side - 1);
         let rows = 0..height + 2 * PAD;
         let row = |y: usize| &picture[held(y, height) * width..][..width];
         let stride = width + 2 * PAD;
-        let pixels = rows.flat_map(|y| (0..stride).map(move |x| row(y)[held(x, width)]));
+        let numbers = rows.flat_map(|y| (0..stride).map(move |x| row(y)[held(x, width)][n]));
         Self {
-            pixels: pixels.collect(),
+            numbers: numbers.collect(),
             stride,
         }
     }
 
     /// Of a row of the picture with so many pixels before its first, that many and more.
-    fn row(&self, y: usize, before: usize, count: usize) -> &[T] {
-        &self.pixels[y * self.stride + before..][..count]
+    fn row(&self, y: usize, before: usize, count: usize) -> &[f32] {
+        &self.numbers[y * self.stride + before..][..count]
     }
+}
+
+/// What weights are made of: numbers and their variances.
+struct By {
+    values: Vec<Plane>,
+    variances: Vec<Plane>,
+    width: usize,
+    height: usize,
 }
 
 impl By {
     /// Adds half of the filtered picture to the rows from `first` on.
-    fn add_filtered(&self, of: &[[f32; 4]], first: usize, band: &mut [[f32; 4]]) {
+    fn add_filtered(
+        &self,
+        of: &[[f32; 4]],
+        variance: &[[f32; 4]],
+        first: usize,
+        band: &mut [[f32; 4]],
+    ) {
         let width = self.width;
         let rows = band.len() / width;
-        let variance_of = |i: usize| {
-            let [x, y] = [i % width, first + i / width];
-            self.variance.row(PAD + y, PAD + x, 1)[0]
-        };
         let mut sums = vec![[0.0_f32; 4]; band.len()];
         let mut weights = vec![0.0_f32; band.len()];
-        let mut in_rows = vec![[0.0_f32; FEATURES]; (rows + 2 * PATCH) * width];
-        let mut in_patches = vec![[0.0_f32; FEATURES]; width];
+        // Of each row the distances by each feature, one behind the other.
+        let mut in_rows = vec![0.0_f32; (rows + 2 * PATCH) * FEATURES * width];
+        let mut in_patches = vec![0.0_f32; FEATURES * width];
+        let mut apart = Apart::new(width + 2 * PATCH);
         for shift in 0..SIDE * SIDE {
             let [across, down] = [shift % SIDE, shift / SIDE];
-            for (y, sums) in in_rows.chunks_mut(width).enumerate() {
-                self.set_distances(first + y, [across, down], sums);
+            for (y, sums) in in_rows.chunks_mut(FEATURES * width).enumerate() {
+                self.compare(first + y, [across, down], &mut apart);
+                apart.sum_over_patches(sums);
             }
             for y in 0..rows {
                 // Shifts count from one window before.
@@ -151,15 +198,17 @@ impl By {
                     continue;
                 }
                 let other = &of[(other_y - WINDOW) * width..][..width];
-                in_patches.fill([0.0; FEATURES]);
-                for row in in_rows[y * width..].chunks(width).take(TAPS) {
+                in_patches.fill(0.0);
+                let patches = in_rows[y * FEATURES * width..].chunks(FEATURES * width);
+                for row in patches.take(TAPS) {
                     for (sum, distance) in in_patches.iter_mut().zip(row) {
-                        *sum = std::array::from_fn(|f| sum[f] + distance[f]);
+                        *sum += distance;
                     }
                 }
                 let seen = WINDOW.saturating_sub(across)..width.min(width + WINDOW - across);
                 for x in seen {
-                    let [color, albedo, normal, depth] = in_patches[x].map(|d| d.max(0.0));
+                    let [color, albedo, normal, depth] =
+                        [0, 1, 2, 3].map(|f| in_patches[f * width + x].max(0.0));
                     let apart = ((color + albedo) + (normal + depth)) / (TAPS * TAPS) as f32;
                     if apart > MOST_APART {
                         continue;
@@ -174,7 +223,7 @@ impl By {
         }
         for (i, pixel) in band.iter_mut().enumerate() {
             // Without noise there is nothing to take out, and a mean would round.
-            let is_exact = variance_of(i) == [0.0; 4];
+            let is_exact = variance[first * width + i] == [0.0; 4];
             for c in 0..4 {
                 let filtered = match is_exact {
                     true => of[first * width + i][c],
@@ -185,35 +234,74 @@ impl By {
         }
     }
 
-    /// Of each pixel of row `y`, from [`PATCH`] rows before the picture on, to the one a shift away, the sum over a row of
-    /// its patch.
-    fn set_distances(&self, y: usize, [across, down]: [usize; 2], sums: &mut [[f32; FEATURES]]) {
+    /// How far each pixel of row `y`, from [`PATCH`] rows and columns before the picture on, is from the one a shift away.
+    fn compare(&self, y: usize, [across, down]: [usize; 2], apart: &mut Apart) {
         let count = self.width + 2 * PATCH;
-        let colors = self.colors.row(y + WINDOW, WINDOW, count);
-        let variance = self.variance.row(y + WINDOW, WINDOW, count);
-        let other_colors = self.colors.row(y + down, across, count);
-        let other_variance = self.variance.row(y + down, across, count);
-        let guides = self.guides.row(y + WINDOW, WINDOW, count);
-        let of_guides = self.variance_of_guides.row(y + WINDOW, WINDOW, count);
-        let other_guides = self.guides.row(y + down, across, count);
-        let of_other_guides = self.variance_of_guides.row(y + down, across, count);
-        let mut last = [[0.0_f32; FEATURES]; TAPS];
+        apart.by_feature.fill(0.0);
+        for together in &TOGETHER {
+            apart.clear();
+            for n in together.numbers.clone() {
+                let [values, variances] = [&self.values[n], &self.variances[n]].map(|plane| {
+                    let own = plane.row(y + WINDOW, WINDOW, count);
+                    [own, plane.row(y + down, across, count)]
+                });
+                apart.add(values, variances);
+            }
+            apart.divide(together);
+        }
+    }
+}
+
+/// Differences of the pixels of a row.
+struct Apart {
+    /// Squares beyond what variances explain, and the variances.
+    above: Vec<f32>,
+    below: Vec<f32>,
+    /// Of all pixels by each feature, one feature behind the other.
+    by_feature: Vec<f32>,
+}
+
+impl Apart {
+    fn new(count: usize) -> Self {
+        let none = vec![0.0; count];
+        Self {
+            above: none.clone(),
+            below: none,
+            by_feature: vec![0.0; FEATURES * count],
+        }
+    }
+
+    fn clear(&mut self) {
+        self.above.fill(0.0);
+        self.below.fill(0.0);
+    }
+
+    fn add(&mut self, [p, q]: [&[f32]; 2], [v, w]: [&[f32]; 2]) {
+        let count = self.above.len();
+        let (p, q, v, w) = (&p[..count], &q[..count], &v[..count], &w[..count]);
+        let (above, below) = (&mut self.above[..count], &mut self.below[..count]);
         for i in 0..count {
-            let (p, q) = (colors[i], other_colors[i]);
-            let (v, w) = (variance[i], other_variance[i]);
-            let of = [0, 1, 2, 3].map(|c| {
-                let apart = (p[c] - q[c]) * (p[c] - q[c]) - (v[c] + v[c].min(w[c]));
-                apart / (LEAST + STRENGTH * STRENGTH * (v[c] + w[c]))
-            });
-            let color = 0.25 * ((of[0] + of[1]) + (of[2] + of[3]));
-            let [albedo, normal, depth] = apart(
-                [&guides[i], &other_guides[i]],
-                [&of_guides[i], &of_other_guides[i]],
-            );
-            last[i % TAPS] = [color, albedo, normal, depth];
-            if i >= 2 * PATCH {
-                sums[i - 2 * PATCH] =
-                    std::array::from_fn(|f| last.iter().map(|taps| taps[f]).sum());
+            above[i] += (p[i] - q[i]) * (p[i] - q[i]) - (v[i] + v[i].min(w[i]));
+            below[i] += v[i] + w[i];
+        }
+    }
+
+    fn divide(&mut self, together: &Together) {
+        let count = self.above.len();
+        let of_feature = &mut self.by_feature[together.feature * count..][..count];
+        let strength = together.strength * together.strength;
+        for ((sum, above), below) in of_feature.iter_mut().zip(&self.above).zip(&self.below) {
+            *sum += together.weight * (above / (together.least + strength * below));
+        }
+    }
+
+    /// The sums over rows of patches, of each pixel of the picture.
+    fn sum_over_patches(&self, sums: &mut [f32]) {
+        let count = self.above.len();
+        let width = count - 2 * PATCH;
+        for (sums, apart) in sums.chunks_mut(width).zip(self.by_feature.chunks(count)) {
+            for (x, sum) in sums.iter_mut().enumerate() {
+                *sum = apart[x..x + TAPS].iter().sum();
             }
         }
     }
@@ -267,6 +355,23 @@ mod tests {
         pairs
             .map(|(a, b)| [0, 1, 2, 3].map(|c| 0.5 * (a[c] + b[c])))
             .collect()
+    }
+
+    #[test]
+    fn what_noise_explains_is_not_apart() {
+        let numbers = [[0.5_f32; 1], [0.7; 1]];
+        for together in &TOGETHER {
+            // Each number is apart by its standard deviation, and by five of them.
+            let [even, clear] = [0.02_f32, 0.0008].map(|variance| {
+                let mut apart = Apart::new(1);
+                for _ in together.numbers.clone() {
+                    apart.add([&numbers[0], &numbers[1]], [&[variance]; 2]);
+                }
+                apart.divide(together);
+                apart.by_feature[together.feature] / together.weight
+            });
+            assert!(even <= 0.0 && clear > 5.0, "{even} {clear}");
+        }
     }
 
     #[test]

@@ -1,12 +1,11 @@
 //! What tells detail from noise beside colours: what paths met first.
 //!
 //! ```text
-//! g   = albedo, normal, depth of first collisions: sums over paths / paths, 0 of paths that have none
-//! d^2 = (sum (g_p - g_q)^2 - (v_p + min(v_p, v_q))) / (e + k^2 sum (v_p + v_q))        of each of the three
+//! g = albedo, normal, depth of first collisions: sums over paths / paths, 0 of paths that have none
 //! ```
 //!
-//! `v` is the variance of each number, as that of colours is. Depths count from their mean over the picture, in standard
-//! deviations over it, so that all three are of the order of 1 and no unit matters.
+//! Depths count from their mean over the picture, in standard deviations over it, so that all three are of the order of 1
+//! and no unit matters.
 
 use super::layers::PathMeans;
 
@@ -26,14 +25,6 @@ const NUMBERS: usize = 7;
 
 /// Albedo, normal and depth, as they are compared.
 pub(super) type Compared = [f32; NUMBERS];
-
-/// Which of these numbers are compared together.
-const KINDS: [std::ops::Range<usize>; 3] = [0..3, 3..6, 6..7];
-
-/// How far they may differ, in standard deviations of their difference.
-const STRENGTH: f32 = 1.5;
-/// Squares of differences that are none.
-const LEAST: f32 = 1e-3;
 
 /// Guides of two halves as they are compared.
 pub(super) fn compared(halves: [&[Guide]; 2]) -> [Vec<Compared>; 2] {
@@ -60,19 +51,6 @@ pub(super) fn compared(halves: [&[Guide]; 2]) -> [Vec<Compared>; 2] {
         [r, g, b, x, y, z, depth as f32]
     };
     halves.map(|half| half.iter().map(of).collect())
-}
-
-/// How far the guides of two pixels are apart, each kind by itself, beyond what their variances explain.
-pub(super) fn apart(of: [&Compared; 2], variance: [&Compared; 2]) -> [f32; 3] {
-    let ([p, q], [v, w]) = (of, variance);
-    KINDS.map(|kind| {
-        let (mut above, mut below) = (0.0, 0.0);
-        for i in kind {
-            above += (p[i] - q[i]) * (p[i] - q[i]) - (v[i] + v[i].min(w[i]));
-            below += v[i] + w[i];
-        }
-        above / (LEAST + STRENGTH * STRENGTH * below)
-    })
 }
 
 #[cfg(test)]
@@ -104,14 +82,5 @@ mod tests {
                 .iter()
                 .all(|guide| guide[6] == 0.0)
         );
-    }
-
-    #[test]
-    fn what_noise_explains_is_not_apart() {
-        let [p, q] = [0.5, 0.7].map(|x| [x; NUMBERS]);
-        // Each number is apart by its standard deviation, and by five of them.
-        let [even, clear] = [0.02, 0.0008].map(|v| [v; NUMBERS]);
-        assert!(apart([&p, &q], [&even; 2]).iter().all(|&d| d <= 0.0));
-        assert!(apart([&p, &q], [&clear; 2]).iter().all(|&d| d > 5.0));
     }
 }
