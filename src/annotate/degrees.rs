@@ -192,7 +192,8 @@ fn meets(mark: &Mark, low: Point, high: Point) -> bool {
             };
             is_over([left, at[1] - size], [left + width, at[1] + 0.25 * size])
         }
-        Mark::Cells { at, size, .. } => is_over(*at, [at[0] + size[0], at[1] + size[1]]),
+        // Its numbers stand on the right.
+        Mark::Cells { at, size, .. } => is_over(*at, [f64::INFINITY, at[1] + size[1]]),
     }
 }
 
@@ -342,5 +343,17 @@ mod tests {
         );
         // Outside of the picture altogether.
         assert!(texts(240, &[along(150.0)]).is_empty());
+    }
+    #[test]
+    fn none_lies_over_a_bar_or_between_its_numbers() {
+        let bar = Mark::Cells {
+            at: [100.0, 20.0],
+            size: [10.0, 80.0],
+            columns: 1,
+            colors: vec![[0; 3]; 2],
+        };
+        let at = |x: f64, y: f64| meets(&bar, [x, y], [x + 20.0, y + 10.0]);
+        assert!(at(95.0, 50.0) && at(130.0, 50.0));
+        assert!(!at(70.0, 50.0) && !at(130.0, 105.0) && !at(130.0, 5.0));
     }
 }
