@@ -4,6 +4,7 @@ use super::{output::say_aside, timings::Loaded};
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::{
+    collections::BTreeSet,
     io::IsTerminal,
     sync::{Mutex, MutexGuard, PoisonError},
     time::{Duration, Instant},
@@ -27,6 +28,7 @@ pub struct Progress {
     told: Told,
     loaded: Mutex<Loaded>,
     last: Mutex<Last>,
+    said: Mutex<BTreeSet<String>>,
 }
 
 /// The stage that was told last, and when it or a part of it was.
@@ -75,6 +77,7 @@ impl Progress {
         Self {
             told,
             loaded: Mutex::default(),
+            said: Mutex::default(),
             last: Mutex::new(Last {
                 stage: "",
                 done: 0,
@@ -210,8 +213,12 @@ impl Progress {
         }
     }
 
-    /// Says something that stays.
+    /// Says something that stays, once.
     pub fn note(&self, text: &str) {
+        let mut said = self.said.lock().unwrap_or_else(PoisonError::into_inner);
+        if !said.insert(text.to_owned()) {
+            return;
+        }
         match &self.told {
             Told::Line(line) => line.suspend(|| say_aside(text)),
             Told::Json => say_json(&serde_json::json!({ "note": text })),

@@ -1,4 +1,9 @@
-//! Counts as a person reads them.
+//! Counts and units as a person reads them.
+
+/// What stands behind a number.
+pub fn in_unit(unit: Option<&str>) -> String {
+    unit.map_or(String::new(), |unit| format!(" {unit}"))
+}
 
 /// Digits in groups of three.
 pub fn grouped(count: u64) -> String {

@@ -30,11 +30,33 @@ impl fmt::Display for Unseen {
     }
 }
 
-/// Why nothing of the volume is seen in `picture`, where that is so. `has_others` says that the picture shows more than the
-/// volume, lines or a map: then pixels do not tell, and it is so where values and places of the volume leave no doubt.
+/// What there may be in a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shows {
+    /// The volume.
+    Volume,
+    /// The volume and lines, a map or spheres.
+    VolumeAndOthers,
+    /// Lines, a map or spheres, and the volume is hidden.
+    Others,
+}
+
+impl Shows {
+    /// Of a picture with or without lines, a map or spheres.
+    pub fn of(has_others: bool, hides_volume: bool) -> Self {
+        match (has_others, hides_volume) {
+            (_, true) => Self::Others,
+            (true, false) => Self::VolumeAndOthers,
+            (false, false) => Self::Volume,
+        }
+    }
+}
+
+/// Why nothing of the volume is seen in `picture`, where that is so. Where others are seen too, pixels do not tell, and it is
+/// so where values and places of the volume leave no doubt; where it is hidden, nothing is said but of an empty picture.
 pub fn why_empty(
     picture: &Picture,
-    has_others: bool,
+    shows: Shows,
     volume: &Volume,
     classification: &Classification,
     camera: &Camera,
@@ -48,6 +70,11 @@ pub fn why_empty(
         (Classification::Function(function), _) => covers_nothing(settings, function, volume),
         (Classification::RangeOfPicture, _) => false,
     };
+    if shows == Shows::Others {
+        let why = "no line, map or point is seen, and the volume is not drawn".to_owned();
+        return is_empty.then_some(Unseen { is_empty, why });
+    }
+    let has_others = shows == Shows::VolumeAndOthers;
     let is_unseen = is_empty || has_others && (holds_no_data(volume) || is_certain());
     is_unseen.then(|| Unseen {
         is_empty,
@@ -238,7 +265,7 @@ mod tests {
         settings: Settings,
         window: [f64; 2],
         alpha: f32,
-        has_others: bool,
+        shows: Shows,
     }
 
     /// A cube of values 0 to 7 around (1, 1, 1), seen from the front, all of it grey.
@@ -265,7 +292,7 @@ mod tests {
             settings: Settings::default(),
             window: [0.0, 7.0],
             alpha: 0.0,
-            has_others: false,
+            shows: Shows::Volume,
         }
     }
 
@@ -290,7 +317,7 @@ mod tests {
         let function = Classification::Function(window.grey(Classified::Samples));
         why_empty(
             &picture,
-            case.has_others,
+            case.shows,
             &case.volume,
             &function,
             &case.camera,
@@ -315,7 +342,7 @@ mod tests {
     fn beside_lines_the_volume_counts_where_it_leaves_no_doubt() {
         let beside = || Case {
             alpha: 1.0,
-            has_others: true,
+            shows: Shows::VolumeAndOthers,
             ..case()
         };
         assert_eq!(reason(&beside()), "");
@@ -344,6 +371,14 @@ mod tests {
         let mut empty = beside();
         empty.volume.validity = Some(vec![0; 8]);
         assert!(reason(&empty).contains("no data"));
+        // A hidden volume is no reason for anything.
+        let hidden = |alpha| Case {
+            alpha,
+            shows: Shows::of(true, true),
+            ..case()
+        };
+        assert_eq!(reason(&hidden(1.0)), "");
+        assert!(reason(&hidden(0.0)).contains("no line, map or point is seen"));
     }
 
     #[test]

@@ -10,7 +10,7 @@ use super::{
     output::{self, write_whole},
     planes::Panels,
     progress::{Progress, ProgressWord},
-    reasons::why_empty,
+    reasons::{Shows, why_empty},
     renderer::{Device, REFERENCE},
     scene_file,
     scene_inputs::SceneInputs,
@@ -281,10 +281,9 @@ impl Render {
         }
         let start = Instant::now();
         let reasoned = parts.only(classification);
-        let has_others = shown.lines().is_some() && !scene.hides_volume();
+        let shows = Shows::of(shown.lines().is_some(), scene.hides_volume());
         if !panels.are_several()
-            && let Some(reason) =
-                why_empty(&picture, has_others, volume, reasoned, camera, settings)
+            && let Some(reason) = why_empty(&picture, shows, volume, reasoned, camera, settings)
         {
             progress.note(&reason.to_string());
         }

@@ -63,23 +63,30 @@ impl ShowFlags {
 
 /// Fills in the flags that the word stands for and no other flag says; what they are, as a person would write them.
 fn expand(word: ShowWord, scene: &mut SceneFlags) -> Result<String, Error> {
+    if scene.input.are_points() {
+        return Err(Error::usage(
+            "--show: the input is scattered points, which have neither vapour nor wind",
+            "--points-as spheres --map --annotate",
+        ));
+    }
     let limits = scene.input.limits();
     let source = open(&scene.input, &limits)?;
     let header = source.header();
     let wanted = |names: [&[&str]; 2], what: &str| {
         found(header, names).ok_or_else(|| {
             let wanted = names.concat().join(", ");
+            let there = match header.variables.as_slice() {
+                [] => "one variable without a name".to_owned(),
+                names => names.join(", "),
+            };
             Error::usage(
-                format!(
-                    "--show: no {what} in the input: wanted one of {wanted}, found {}",
-                    header.variables.join(", ")
-                ),
+                format!("--show: no {what} in the input: wanted one of {wanted}, found {there}"),
                 "--variable, --mode iso, --iso-color-by and --flow draw other variables so",
             )
         })
     };
     let has_surface = word != ShowWord::Wind;
-    if scene.input.variable.is_none() && !header.variables.is_empty() {
+    if scene.input.variable.is_none() && (has_surface || !header.variables.is_empty()) {
         // Lines alone want a grid, of whatever it is.
         scene.input.variable = match (wanted(VAPOUR, "water vapour"), has_surface) {
             (Ok(name), _) => Some(name),

@@ -221,6 +221,37 @@ fn what_lines_cannot_be_drawn_with_is_refused_by_name() {
     folder
         .run("render phantom:head,n=8 --hide-volume -o a.png")
         .assert_refused(2, &["--flow"]);
+    folder.file("p.csv", "x,y,z,v\n0,0,0,1\n1,1,1,2\n");
+    for input in ["p.csv", "phantom:head,n=8"] {
+        let ran = folder.run(&format!("render {input} --show both -o a.png --size 20x20"));
+        let wanted: &[&str] = match input {
+            "p.csv" => &["--show: the input is scattered points"],
+            _ => &[
+                "--show: no water vapour",
+                "found one variable without a name",
+            ],
+        };
+        ran.assert_refused(2, wanted);
+    }
+}
+
+#[test]
+fn particles_that_go_nowhere_and_what_was_said_already_are_said_once() {
+    let folder = Folder::new();
+    let render = |words: &str| {
+        let ran = folder.run(&format!("render {words} -o a.png --size 20x20 --force"));
+        ran.assert_done();
+        ran.err
+    };
+    let said = render("phantom:storm,n=16 --variable vapor --hide-volume --flow path --time 7");
+    assert!(said.contains("no line goes anywhere"), "{said}");
+    let why = "the picture is empty: no line, map or point is seen, and the volume is not drawn";
+    assert!(said.contains(why), "{said}");
+    let said = render(&format!("{} --show vapor", fixture("wrf.nc")));
+    let notes: Vec<&str> = said.lines().collect();
+    for (at, note) in notes.iter().enumerate() {
+        assert!(!notes[..at].contains(note), "twice: {note}");
+    }
 }
 
 #[test]

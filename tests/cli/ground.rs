@@ -164,7 +164,7 @@ fn a_film_has_one_range_for_all_its_times_and_frames_between_them() {
     ran.assert_done();
     assert!(
         ran.err
-            .contains("the ground is coloured by t2m, from 280.0000 to 320.0000"),
+            .contains("the ground is coloured by t2m, from 280 to 320 K"),
         "{ran:#?}"
     );
     for (frame, warmer) in [(0, 0.0), (1, 5.0), (2, 10.0)] {
@@ -219,6 +219,11 @@ fn a_ground_that_is_not_there_is_refused_by_name() {
             "wanted a level such as 0, or a height",
         ),
         (ground(), "--ground-range 0,1", "--ground"),
+        (
+            ground(),
+            "--ground t2m --ground-range 303,301",
+            "--ground-range 303,301: wanted LO,HI",
+        ),
         (
             ground(),
             "--ground t2m --ground-colormap jet",

@@ -86,6 +86,10 @@ fn what_spheres_do_not_go_with_is_refused_by_name() {
         ),
         ("p.csv --points-as spheres --section axial", "--section"),
         ("p.csv --points-as spheres --sphere-size 0", "--sphere-size"),
+        (
+            "p.csv --points-as spheres --sphere-size 21",
+            "at most 20 pixels",
+        ),
         ("p.csv --points-as spheres --jitter", "and --jitter"),
         (
             "p.csv --points-as spheres --preintegrated",

@@ -10,7 +10,7 @@ use crate::{
     cli::{
         Error,
         line::Line,
-        reasons::{Unseen, why_empty},
+        reasons::{Shows, Unseen, why_empty},
         renderer::{Device, Job, Renderer},
         scene_inputs::Parts,
         timings::{FrameTime, Timings, ms_since, peak_rss_bytes},
@@ -184,10 +184,10 @@ impl Work<'_> {
         };
         seen.frames.push((at, time));
         let reasoned = self.parts.only(classification);
-        let has_others =
-            self.drawing.content.lines().is_some() && !self.drawing.scene.hides_volume();
+        let hides_volume = self.drawing.scene.hides_volume();
+        let shows = Shows::of(self.drawing.content.lines().is_some(), hides_volume);
         let picture = &frame.picture;
-        let unseen = why_empty(picture, has_others, volume, reasoned, camera, settings);
+        let unseen = why_empty(picture, shows, volume, reasoned, camera, settings);
         seen.empty.extend(unseen.map(|unseen| (number, unseen)));
         Ok(frame.picture)
     }

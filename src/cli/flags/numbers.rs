@@ -1,6 +1,7 @@
 //! Numbers as they are written on the command line and, in the same way, in a scene file.
 
 use super::color::rgba;
+use crate::cli::Error;
 use serde::{Deserialize, Serialize};
 use std::{fmt, str::FromStr};
 
@@ -25,6 +26,20 @@ impl<const N: usize> fmt::Display for Numbers<N> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let words: Vec<_> = self.0.iter().map(f64::to_string).collect();
         f.write_str(&words.join(","))
+    }
+}
+
+impl Numbers<2> {
+    /// Refuses ends of a range of which the first is not under the other; `hint` shows two that are right.
+    pub fn check_rises(&self, flag: &str, hint: &str) -> Result<(), Error> {
+        let [low, high] = self.0;
+        match low < high && (high - low).is_finite() {
+            true => Ok(()),
+            false => Err(Error::usage(
+                format!("{flag} {self}: wanted LO,HI, the first under the other"),
+                format!("{flag} {hint}"),
+            )),
+        }
     }
 }
 

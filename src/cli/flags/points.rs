@@ -132,6 +132,15 @@ impl SceneFlags {
                 "leave it out",
             ));
         }
+        let [_, height] = self.picture.extent_pixels()?;
+        if let Some(size) = look.sphere_size.filter(|&size| size > f64::from(height)) {
+            return Err(Error::usage(
+                format!(
+                    "--sphere-size {size}: wanted at most {height} pixels of a picture of {height} rows"
+                ),
+                "--sphere-size 14",
+            ));
+        }
         if self.point_grid.are_given() && look.points_as != Some(PointsWord::Grid) {
             return Err(Error::usage(
                 "--grid, --interpolate, --reach and --anisotropy need --points-as grid",

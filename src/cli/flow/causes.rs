@@ -15,6 +15,7 @@ const FAR: f64 = 8.0;
 pub fn say(lines: &[Line], progress: &Progress) {
     let vertices: usize = lines.iter().map(|line| line.vertices.len()).sum();
     let drawn = lines.iter().filter(|line| line.pieces().next().is_some());
+    let drawn = drawn.count();
     let counts = End::ALL.into_iter().filter_map(|cause| {
         let ends = lines.iter().flat_map(|line| line.ends).flatten();
         let count = ends.filter(|&end| end == cause).count();
@@ -23,9 +24,14 @@ pub fn say(lines: &[Line], progress: &Progress) {
     let counts: Vec<String> = counts.collect();
     progress.note(&format!(
         "{} lines of {vertices} vertices; ends: {}",
-        drawn.count(),
+        drawn,
         counts.join(", ")
     ));
+    if drawn == 0 && !lines.is_empty() {
+        progress.note(
+            "no line goes anywhere: particles need times of the file after their start, or before it with --flow-direction backward",
+        );
+    }
 }
 
 /// How many cells particles go from one snapshot to the next, and a warning where that is far.

@@ -10,6 +10,7 @@ use super::super::{
     ground::Ground,
     map::GroundLine,
     progress::Progress,
+    readable::in_unit,
 };
 use super::barbs::{self, Barbs};
 use super::colors::LineColors;
@@ -19,6 +20,7 @@ use super::moving::{Passed, Tail, Way, Ways};
 use super::style::StyleWord;
 use crate::annotate::{ColorLegend, DegreeLine, GeometryLegend};
 use crate::color::decode_srgb;
+use crate::figure::short;
 use crate::points::Points;
 use crate::volume::Header;
 use glam::DVec3;
@@ -269,8 +271,11 @@ impl DrawnLines {
         if one.is_none() {
             let [low, high] = colors.range;
             progress.note(&format!(
-                "lines are coloured by {}, from {low:.4} to {high:.4}",
-                values.name
+                "lines are coloured by {}, from {} to {}{}",
+                values.name,
+                short(low),
+                short(high),
+                in_unit(traced.unit.as_deref())
             ));
         }
         let mut ways = Vec::new();

@@ -67,13 +67,8 @@ impl FlowStyleFlags {
 
     /// What can be refused before anything is read; `height` is the one of the picture in pixels.
     pub fn check(&self, height: u32) -> Result<(), Error> {
-        if let Some(range @ Numbers([low, high])) = self.flow_range
-            && !(low < high && (high - low).is_finite())
-        {
-            return Err(Error::usage(
-                format!("--flow-range {range}: wanted LO,HI, the first under the other"),
-                "--flow-range 0,30",
-            ));
+        if let Some(range) = self.flow_range {
+            range.check_rises("--flow-range", "0,30")?;
         }
         let most = (WIDEST_PART * f64::from(height)).max(WIDEST_AT_LEAST);
         match self.flow_width.filter(|&width| width > most) {

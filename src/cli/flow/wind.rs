@@ -54,8 +54,11 @@ pub fn read(
     let wanted = voxels.saturating_mul(12 * times.len() as u64 + 12);
     if wanted > variables.limits.max_bytes {
         return Err(Error::Memory(format!(
-            "the wind of {} times takes {wanted} bytes, and there are {}",
-            times.len(),
+            "the wind of {} takes {wanted} bytes, and there are {}",
+            match times.len() {
+                1 => "one time".to_owned(),
+                count => format!("{count} times"),
+            },
             variables.limits.max_bytes
         )));
     }

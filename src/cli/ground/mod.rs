@@ -19,8 +19,10 @@ use super::{
     flow::{Variables, ground_heights, sea_of},
     map::ground_height,
     progress::Progress,
+    readable::in_unit,
 };
 use crate::annotate::ColorLegend;
+use crate::figure::short;
 use crate::geometry::Triangles;
 use crate::volume::{Grid, Header};
 use field::{color_of, is_upright};
@@ -101,8 +103,10 @@ impl Ground {
             .zip(legend.function.color.last());
         if let (Some(word), Some((low, high))) = (&flags.ground, ends) {
             progress.note(&format!(
-                "the ground is coloured by {word}, from {:.4} to {:.4}",
-                low.value, high.value
+                "the ground is coloured by {word}, from {} to {}{}",
+                short(low.value),
+                short(high.value),
+                in_unit(legend.unit.as_deref())
             ));
         }
         let columns = u64::from(field.grid.dims[0]) * u64::from(field.grid.dims[1]);

@@ -112,6 +112,9 @@ fn check_lines(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
     scene.flow.check_words()?;
     let [_, height] = scene.picture.extent_pixels()?;
     scene.flow_style.check(height)?;
+    if let Some(range) = scene.ground.ground_range {
+        range.check_rises("--ground-range", "280,310")?;
+    }
     if scene.flow.flow.is_some() && settings.filter != Filter::Linear {
         return Err(Error::usage(
             format!(

@@ -3,6 +3,7 @@
 use crate::cli::Error;
 use crate::cli::flags::SceneFlags;
 use crate::cli::progress::Progress;
+use crate::cli::readable::in_unit;
 use crate::figure::short;
 use crate::look::{falls_with_height, mean_at_a_third};
 use crate::technique::Mode;
@@ -26,8 +27,7 @@ pub fn with_level(
         return Ok(None);
     };
     let level = rounded(level);
-    let unit = header.unit.as_ref();
-    let unit = unit.map_or(String::new(), |unit| format!(" {unit}"));
+    let unit = in_unit(header.unit.as_deref());
     progress.note(&format!(
         "the surface of the value {}{unit}, the mean of all columns and times at a third of the height to three digits; --iso takes others",
         short(level)

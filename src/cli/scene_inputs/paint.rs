@@ -8,6 +8,7 @@ use crate::cli::flags::{
 use crate::cli::load::{load_from, open, open_first};
 use crate::cli::memory::DeviceRoom;
 use crate::cli::progress::Progress;
+use crate::cli::readable::in_unit;
 use crate::look::summary_at;
 use crate::technique::{Level, Mode, Role, Settings};
 use crate::transfer::{Classified, TransferFunction, Window};
@@ -76,8 +77,7 @@ impl Reader<'_> {
         let is_news = |what: &&String| !what.eq_ignore_ascii_case(&word.replace('_', " "));
         let what = header.long_name.as_ref().filter(is_news);
         let what = what.map_or(String::new(), |what| format!(", {what}"));
-        let unit = header.unit.as_ref();
-        let unit = unit.map_or(String::new(), |unit| format!(" {unit}"));
+        let unit = in_unit(header.unit.as_deref());
         let (volume, _) = load_from(source, &scene, self.device, self.progress)?;
         let volume = if is_same_grid(&volume.grid(), &surfaces.grid()) {
             Volume {

@@ -17,7 +17,7 @@ use crate::{
         look::{Framing, Use, View, Views, prepared},
         memory::{DeviceMemory, DeviceRoom, Held, needed_bytes},
         progress::Progress,
-        reasons::why_empty,
+        reasons::{Shows, why_empty},
         renderer::Device,
         scene_inputs::{SceneInputs, with_level},
         signals::Gate,
@@ -252,7 +252,14 @@ impl Batch<'_> {
             } = drawn;
             renderer.change(&shown.classification, settings);
             let mut picture = renderer.draw(camera)?.picture;
-            let reason = why_empty(&picture, false, &shown.volume, reasoned, camera, settings);
+            let reason = why_empty(
+                &picture,
+                Shows::Volume,
+                &shown.volume,
+                reasoned,
+                camera,
+                settings,
+            );
             let view = wanted.view.map(|view| format!("--view {}: ", view.name()));
             let view = view.unwrap_or_default();
             let empty = reason.map(|reason| format!("{view}{reason}"));
