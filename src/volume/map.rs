@@ -16,8 +16,8 @@ pub struct MapProjection {
     pub standard_longitude: Option<f64>,
     /// Latitude and longitude in the middle of the grid. `None` where the file does not say.
     pub center: Option<[f64; 2]>,
-    /// A corner, by which others can see whether the file agrees with itself. `None` where the file does not say.
-    pub corner: Option<MapCorner>,
+    /// The corners, by which others can see whether the file agrees with itself. `None` where the file does not say.
+    pub corners: [Option<MapCorner>; 4],
     /// Of latitudes and longitudes whose pole is moved: where it is. `None` where it is not moved, or the file does not say.
     pub pole: Option<MovedPole>,
 }
@@ -30,7 +30,7 @@ impl MapProjection {
             true_latitudes: [None; 2],
             standard_longitude: None,
             center: None,
-            corner: None,
+            corners: [None; 4],
             pole: None,
         }
     }
@@ -83,7 +83,7 @@ impl MovedPole {
     }
 }
 
-/// The first point of a grid on a map.
+/// The point in a corner of a grid on a map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "json", derive(serde::Serialize, serde::Deserialize))]
 pub struct MapCorner {

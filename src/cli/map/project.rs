@@ -12,7 +12,7 @@
 //! l the longitude from the one that runs straight north, p1 and p2 the true latitudes, on a sphere of 6370 km as WRF has it.
 //! Snyder, "Map Projections: A Working Manual", USGS Professional Paper 1395, 1987, chapters 7, 15, 21.
 
-use crate::volume::{Header, MapKind, MapProjection, MovedPole};
+use crate::volume::{Header, MapCorner, MapKind, MapProjection, MovedPole};
 use glam::DVec3;
 
 /// Of a step.
@@ -91,14 +91,17 @@ impl Projection {
         }
     }
 
-    /// How far a corner lies from where the latitudes of the file have it, world length, where that is more than a
-    /// twentieth of a step.
+    /// How far the corner that is farthest off lies from where the latitudes of the file have it, world length, where that
+    /// is more than a twentieth of a step.
     pub fn disagreement(&self, map: &MapProjection) -> Option<f64> {
-        let corner = map.corner?;
-        let [latitude, longitude] = corner.latitude_longitude;
-        let [x, y] = self.place([longitude, latitude])?;
-        let off = (x - corner.world[0]).hypot(y - corner.world[1]);
-        (off > MOST_OFF * corner.step).then_some(off)
+        let off = |corner: MapCorner| {
+            let [latitude, longitude] = corner.latitude_longitude;
+            let [x, y] = self.place([longitude, latitude])?;
+            let off = (x - corner.world[0]).hypot(y - corner.world[1]);
+            (off > MOST_OFF * corner.step).then_some(off)
+        };
+        let all = map.corners.into_iter().flatten().filter_map(off);
+        all.max_by(f64::total_cmp)
     }
 
     /// True where the line between two longitudes goes over the edge of the map: on it, it would go around the Earth.
@@ -332,7 +335,6 @@ fn cone(p1: f64, p2: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::volume::MapCorner;
 
     #[test]
     fn the_equator_lies_between_the_latitudes_of_both_sides() {
@@ -348,7 +350,7 @@ mod tests {
                 true_latitudes: true_latitudes.map(Some),
                 standard_longitude: Some(20.0),
                 center: Some([-3.0, 25.0]),
-                corner: None,
+                corners: [None; 4],
                 pole: None,
             };
             let projection = Projection::of_map(&map).expect("a map");
@@ -371,7 +373,7 @@ mod tests {
                 true_latitudes: [Some(30.0), Some(60.0)],
                 standard_longitude: Some(-97.0),
                 center: Some([40.0, -90.0]),
-                corner: None,
+                corners: [None; 4],
                 pole: None,
             };
             change(&mut map);
@@ -422,7 +424,7 @@ mod tests {
                 true_latitudes: true_latitudes.map(Some),
                 standard_longitude: Some(-90.0),
                 center: Some([40.0, -90.0]),
-                corner: None,
+                corners: [None; 4],
                 pole: None,
             };
             Projection::of_map(&map).expect("a map")
@@ -503,11 +505,20 @@ mod tests {
                 true_latitudes: true_latitudes.map(Some),
                 standard_longitude: Some(longitude),
                 center: Some(center),
-                corner: Some(MapCorner {
-                    latitude_longitude: [center[0] + 5.0, center[1] + 7.0],
-                    world: wanted,
-                    step: 10.0,
-                }),
+                corners: [
+                    None,
+                    Some(MapCorner {
+                        latitude_longitude: center,
+                        world: [0.0; 2],
+                        step: 10.0,
+                    }),
+                    Some(MapCorner {
+                        latitude_longitude: [center[0] + 5.0, center[1] + 7.0],
+                        world: wanted,
+                        step: 10.0,
+                    }),
+                    None,
+                ],
                 pole: None,
             };
             let projection = Projection::of_map(&map).expect("a map");
@@ -516,7 +527,7 @@ mod tests {
             assert_eq!(projection.disagreement(&map), None);
             // A kilometre to the east.
             let mut moved = map;
-            if let Some(corner) = &mut moved.corner {
+            if let Some(corner) = &mut moved.corners[2] {
                 corner.world[0] += 1.0;
             }
             let off = projection.disagreement(&moved).expect("they differ");

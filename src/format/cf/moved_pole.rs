@@ -42,7 +42,7 @@ pub(super) fn map(
             .to_owned(),
     });
     Some(MapProjection {
-        corner: corner(arrays, variable, [x, y], place),
+        corners: corners(arrays, variable, [x, y], place).unwrap_or_default(),
         pole,
         ..MapProjection::of_kind(MapKind::LatitudeLongitude)
     })
@@ -65,20 +65,40 @@ fn pole(arrays: &dyn Arrays, variable: &Variable) -> Option<MovedPole> {
     })
 }
 
-/// The first point by the latitudes and longitudes of the file, and where it is drawn.
-fn corner(
+/// The points in the corners by the latitudes and longitudes of the file, and where they are drawn.
+fn corners(
     arrays: &dyn Arrays,
     variable: &Variable,
     [x, y]: [&str; 2],
     place: &Place,
-) -> Option<MapCorner> {
+) -> Option<[Option<MapCorner>; 4]> {
     let [latitude, longitude] = latitude_longitude(arrays, variable, x, y)?;
-    let first = |variable: &Variable| arrays.numbers(variable).ok()?.first().copied();
+    let sizes: Vec<u64> = latitude.dimensions.iter().map(|d| d.size).collect();
+    let &[ny, nx] = &sizes[..] else {
+        return None;
+    };
+    let [latitudes, longitudes] =
+        [latitude, longitude].map(|variable| arrays.numbers(variable).ok());
+    let (latitudes, longitudes) = (latitudes?, longitudes?);
     let matrix = place.world_from_voxel.matrix3;
-    let at = place.world_from_voxel.transform_point3(DVec3::splat(0.5));
-    Some(MapCorner {
-        latitude_longitude: [first(latitude)?, first(longitude)?],
-        world: [at.x, at.y],
-        step: matrix.x_axis.length().min(matrix.y_axis.length()),
-    })
+    let corner = |[right, up]: [bool; 2]| {
+        let end = |is_last: bool, size: u64| {
+            if is_last {
+                size.checked_sub(1)
+            } else {
+                Some(0)
+            }
+        };
+        let [i, j] = [end(right, nx)?, end(up, ny)?];
+        let at = usize::try_from(j.checked_mul(nx)?.checked_add(i)?).ok()?;
+        let voxel = DVec3::new(i as f64, j as f64, 0.0) + 0.5;
+        let place = place.world_from_voxel.transform_point3(voxel);
+        Some(MapCorner {
+            latitude_longitude: [*latitudes.get(at)?, *longitudes.get(at)?],
+            world: [place.x, place.y],
+            step: matrix.x_axis.length().min(matrix.y_axis.length()),
+        })
+    };
+    let all = [[false, false], [true, false], [false, true], [true, true]];
+    Some(all.map(corner))
 }

@@ -45,15 +45,25 @@ pub(super) fn map(arrays: &dyn Arrays, notes: &mut Vec<String>) -> Option<MapPro
         ],
         standard_longitude: number("STAND_LON"),
         center: found.or(said).map(|(lat, lon)| [lat, lon]),
-        corner: corner(arrays),
+        corners: corners(arrays),
         pole: None,
     })
 }
 
-/// The first point by XLAT and XLONG, and by the steps around the middle.
-fn corner(arrays: &dyn Arrays) -> Option<MapCorner> {
-    let first = |name| mean(arrays, name, |_| (0, 1));
-    let latitude_longitude = [first("XLAT")?, first("XLONG")?];
+/// The points in the corners by XLAT and XLONG, and by the steps around the middle.
+fn corners(arrays: &dyn Arrays) -> [Option<MapCorner>; 4] {
+    [[0, 0], [1, 0], [0, 1], [1, 1]].map(|end| corner(arrays, end))
+}
+
+/// The first (0) or the last (1) along x and along y.
+fn corner(arrays: &dyn Arrays, [right, up]: [u64; 2]) -> Option<MapCorner> {
+    let at = |name| {
+        mean(arrays, name, |axis, size| {
+            let end = if axis == 0 { right } else { up };
+            (end * size.saturating_sub(1), 1)
+        })
+    };
+    let latitude_longitude = [at("XLAT")?, at("XLONG")?];
     let variable = arrays.variables().iter().find(|v| v.name == "XLAT")?;
     let sizes: Vec<u64> = variable.dimensions.iter().map(|d| d.size).collect();
     let &[.., ny, nx] = &sizes[..] else {
@@ -67,10 +77,10 @@ fn corner(arrays: &dyn Arrays) -> Option<MapCorner> {
             .map(|n| 1e-3 * n)
     };
     let (dx, dy) = (step("DX")?, step("DY")?);
-    let half = |n: u64, step: f64| -0.5 * (n as f64 - 1.0) * step;
+    let half = |n: u64, step: f64, end: u64| (end as f64 - 0.5) * (n as f64 - 1.0) * step;
     Some(MapCorner {
         latitude_longitude,
-        world: [half(nx, dx), half(ny, dy)],
+        world: [half(nx, dx, right), half(ny, dy, up)],
         step: dx.min(dy),
     })
 }
@@ -83,14 +93,15 @@ fn turned(degrees: f64) -> f64 {
 /// The mean over the points around the middle of the last two dimensions, at the first index of the others. Longitudes
 /// on both sides of 180 degrees go on.
 fn middle(arrays: &dyn Arrays, name: &str) -> Option<f64> {
-    mean(arrays, name, |size| {
+    mean(arrays, name, |_, size| {
         let first = size.saturating_sub(1) / 2;
         (first, if size % 2 == 0 { 2 } else { 1 })
     })
 }
 
-/// The mean over points of the last two dimensions, of which `part` says the first and their number.
-fn mean(arrays: &dyn Arrays, name: &str, part: impl Fn(u64) -> (u64, u64)) -> Option<f64> {
+/// The mean over points of the last two dimensions, of which `part` says the first and their number: of x (0) or y (1), and of
+/// its size.
+fn mean(arrays: &dyn Arrays, name: &str, part: impl Fn(usize, u64) -> (u64, u64)) -> Option<f64> {
     let variable: &Variable = arrays.variables().iter().find(|v| v.name == name)?;
     let Kind::Numbers(_) = variable.kind else {
         return None;
@@ -99,7 +110,7 @@ fn mean(arrays: &dyn Arrays, name: &str, part: impl Fn(u64) -> (u64, u64)) -> Op
     let from_end = variable.dimensions.len().checked_sub(2)?;
     let place = |(k, size): (usize, u64)| match k < from_end {
         true => (0, 1),
-        false => part(size),
+        false => part(from_end + 1 - k, size),
     };
     let sizes = variable.dimensions.iter().map(|dimension| dimension.size);
     let (start, count): (Vec<u64>, Vec<u64>) = sizes.enumerate().map(place).unzip();
