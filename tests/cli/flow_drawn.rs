@@ -235,6 +235,43 @@ fn what_lines_cannot_be_drawn_with_is_refused_by_name() {
     }
 }
 
+/// The storm grows, and its wind with it.
+#[test]
+fn lines_of_a_film_have_the_colours_of_all_times() {
+    let folder = Folder::new();
+    let words = "--variable vapor --hide-volume --flow stream --flow-seeds random:30,4 --size 20x20 --force";
+    let ends = |said: &str| -> f64 {
+        let note = said
+            .lines()
+            .find(|line| line.contains("lines are coloured by speed, from 0 to "));
+        let (_, high) = note
+            .expect("a note")
+            .split_once("from 0 to ")
+            .expect("ends");
+        high.strip_suffix(" m s-1")
+            .expect("a unit")
+            .parse()
+            .expect("a number")
+    };
+    // The film's lines are as long as those of its first time, so that the fastest wind is not on them at others.
+    let of_time = |time: u32| {
+        let ran = folder.run(&format!(
+            "render {STORM},times=3 {words} --time {time} -o a.png"
+        ));
+        ran.assert_done();
+        ends(&ran.err)
+    };
+    let ran = folder.run(&format!("animate {STORM},times=3 {words} --times -o a.gif"));
+    ran.assert_done();
+    let of_film = ends(&ran.err);
+    assert!(of_film > 1.02 * of_time(0), "{of_film}");
+    assert!(of_film < 1.2 * of_time(2), "{of_film}");
+    let ran = folder.run(&format!(
+        "animate {STORM},times=3 {words} --flow-range 0,12 --times -o a.gif"
+    ));
+    assert_eq!(ends(&ran.err), 12.0);
+}
+
 #[test]
 fn particles_that_go_nowhere_and_what_was_said_already_are_said_once() {
     let folder = Folder::new();

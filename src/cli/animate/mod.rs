@@ -34,6 +34,7 @@ use super::{
     annotation::annotation,
     exaggerate,
     flags::{Depth, PictureFlags, SceneFlags, context},
+    flow,
     ground::Ground,
     load,
     memory::{DeviceRoom, Held, fitting},
@@ -41,7 +42,7 @@ use super::{
     progress::{Progress, ProgressWord},
     renderer::Device,
     scene_file,
-    scene_inputs::{self, SceneInputs, wants_stream, with_range_of_film},
+    scene_inputs::{self, SceneInputs, wants_stream},
     show::ShowFlags,
     signals::Gate,
     timings::Timings,
@@ -245,12 +246,16 @@ impl Animate {
                 let settings = &shots[0].settings;
                 let scene = Ground::with_range_of_film(scene)?;
                 let times = header.times;
-                let scene = with_range_of_film(&scene, settings, times, device, progress)?;
+                let scene =
+                    scene_inputs::with_range_of_film(&scene, settings, times, device, progress)?;
+                let scene = flow::with_range_of_film(&scene, shots[0].time, times, progress)?;
                 let mut first = scene.clone();
                 first.input.time = Some(shots[0].time.to_string());
                 let shown = SceneInputs::of_source(source, &first, settings, device, progress)?;
                 let shown = shown.at_level(&first);
-                progress.note("colours and windows are those of the first time");
+                progress.note(
+                    "windows are those of the first time; colours of lines, surfaces and the ground go over all times",
+                );
                 let together = Together::new(&scene, &shown, settings, device.memory()?);
                 Content::Together(Box::new(shown), Box::new(together))
             }

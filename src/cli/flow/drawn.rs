@@ -406,7 +406,7 @@ impl DrawnLines {
 }
 
 /// What is drawn is seldom the wind. What there is to say of the file was said of the volume.
-fn input_of_wind(scene: &SceneFlags) -> InputFlags {
+pub(super) fn input_of_wind(scene: &SceneFlags) -> InputFlags {
     InputFlags {
         variable: None,
         component: None,

@@ -3,10 +3,19 @@
 //!
 //! ```text
 //! wind at time t    linear between those of floor(t) and ceil(t)
+//! colours           over the least and the greatest end of their ranges at each time of the file
 //! ```
 
+use super::colors::LineColors;
+use super::drawn::input_of_wind;
+use super::flags::{FlowColor, FlowWord};
 use super::moving::Ways;
 use super::wind::Wind;
+use crate::cli::{
+    Error,
+    flags::{Numbers, SceneFlags},
+    progress::Progress,
+};
 use crate::flow::{Direction, Limits, Line, stream_lines};
 use glam::DVec3;
 
@@ -27,6 +36,45 @@ pub struct FilmTime<'a> {
     pub seeds: &'a [FilmSeed],
     /// The ways of particles, where lines are these.
     pub ways: Option<&'a Ways>,
+}
+
+/// The scene of a film from its time `first` on, whose stream lines have colours over the values of all times of the file where
+/// nobody says their range.
+pub fn with_range_of_film(
+    scene: &SceneFlags,
+    first: f64,
+    times: u32,
+    progress: &Progress,
+) -> Result<SceneFlags, Error> {
+    let mut whole = scene.clone();
+    let (flags, style) = (&scene.flow, &scene.flow_style);
+    let has_one = matches!(flags.color()?, Some(FlowColor::One(_)));
+    if flags.flow != Some(FlowWord::Stream) || style.flow_range.is_some() || has_one {
+        return Ok(whole);
+    }
+    let (quiet, input) = (Progress::of_part(), input_of_wind(scene));
+    let traced = |time: f64, seeds: Option<&[FilmSeed]>| {
+        let mut input = input.clone();
+        input.time = Some(time.floor().to_string());
+        let of_film = seeds.map(|seeds| FilmTime {
+            time,
+            seeds,
+            ways: None,
+        });
+        flags.traced(FlowWord::Stream, &input, of_film, Some(&[]), &quiet)
+    };
+    let seeds = seeds_of(&traced(first, None)?.lines);
+    let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+    for time in 0..times {
+        progress.stage("look at all times", time as usize, times as usize);
+        let values = traced(time.into(), Some(&seeds))?.values;
+        let [low, high] = LineColors::new(&values, None, None, None).range;
+        range = [range[0].min(low), range[1].max(high)];
+    }
+    if range[0] < range[1] {
+        whole.flow_style.flow_range = Some(Numbers(range));
+    }
+    Ok(whole)
 }
 
 /// The seeds of lines.

@@ -23,7 +23,7 @@ mod wind;
 
 pub use barbs::BarbFlags;
 pub use drawn::DrawnLines;
-pub use film::{FilmSeed, FilmTime};
+pub use film::{FilmSeed, FilmTime, with_range_of_film};
 pub use flags::{FlowFlags, FlowWord};
 pub use ground::{heights as ground_heights, sea_of};
 pub use moving::Ways;
