@@ -37,6 +37,9 @@ pub fn summary_at(volume: &Volume, levels: &[f64], other: &Volume) -> Option<Val
     }
     let cut = is_cut.iter().enumerate().filter(|(_, is_cut)| **is_cut);
     let values: Vec<f64> = cut.filter_map(|(i, _)| value(other, i)).collect();
+    if values.is_empty() {
+        return None;
+    }
     let range = values
         .iter()
         .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
@@ -48,7 +51,7 @@ pub fn summary_at(volume: &Volume, levels: &[f64], other: &Volume) -> Option<Val
         Some(values[i])
     });
     let quantity = Quantity::of_unit(other.unit.as_deref());
-    (!values.is_empty()).then(|| summary.measuring(quantity))
+    Some(summary.measuring(quantity))
 }
 
 /// In the unit of the values; `None` where there is no data.

@@ -88,9 +88,9 @@ fn a_scene_of_a_forecast_has_a_bar_and_its_date_and_is_what_its_flags_show() {
             pixels(&folder, "without.annotation.npy")
         };
         let (bar, [left, ..]) = difference(&layer, &without("bar"));
-        // A line of the bar takes half of the width at most, an em of 11 pixels from the side.
+        // A line of the bar takes half of the width at most, an em of 11 pixels from the side, with two more of a halo.
         assert!(
-            bar > 300 && left >= SIZE[0] / 2 - 11,
+            bar > 300 && left >= SIZE[0] / 2 - 13,
             "{word}: a bar of {bar} pixels from {left} on"
         );
         let (date, [_, _, right, bottom]) = difference(&layer, &without("time"));
