@@ -12,7 +12,7 @@
 //! | 101 | a bug of ours (see [`super::bug`]) |
 //! | 130 | interrupted |
 
-use super::{flags::PHANTOM, sample_limit, signals::INTERRUPTED, stdin};
+use super::{flags::PHANTOM, sample_limit, signals::INTERRUPTED, stdin, technique_hints};
 use crate::{
     annotate, gpu, offscreen,
     picture::{OutputError, PictureError},
@@ -140,12 +140,6 @@ impl From<offscreen::Error> for Error {
                 error.to_string(),
                 "--gradients auto keeps them where it can",
             ),
-            offscreen::Error::Technique(error @ technique::Error::OutOfRange { .. }) => {
-                Self::usage(
-                    error.to_string(),
-                    "`stratavox render --help` says what each word takes",
-                )
-            }
             offscreen::Error::Technique(error @ technique::Error::TooSteep { .. }) => Self::usage(
                 error.to_string(),
                 "--projection orthographic has no such rays; a smaller --fov or a light from elsewhere has fewer",
@@ -161,10 +155,9 @@ impl From<offscreen::Error> for Error {
                 message: error.to_string(),
                 hint: sample_limit::hint(&error),
             },
-            offscreen::Error::Technique(error) => Self::usage(
-                error.to_string(),
-                "docs/matrix.md shows which technique, mode, filter and feature go together",
-            ),
+            offscreen::Error::Technique(error) => {
+                Self::usage(error.to_string(), technique_hints::hint(&error))
+            }
             offscreen::Error::NoLayer { .. } => Self::NotBuilt(error.to_string()),
             offscreen::Error::NoNormals => {
                 Self::usage(error.to_string(), "--component 0 takes one number a voxel")

@@ -262,10 +262,21 @@ impl Past {
         let unread = |cause: io::Error| refused(cause.to_string());
         let mut file = File::open(path).map_err(unread)?;
         let length = file.metadata().map_err(unread)?.len();
+        let cut_off = |wanted: u64| {
+            refused(format!(
+                "it is cut off: wanted {wanted} bytes or more, found {length}"
+            ))
+        };
         let mut head = [0; MAGIC.len() + 8];
-        if file.read_exact(&mut head).is_err() || !head.starts_with(MAGIC) {
+        let magic = &mut head[..MAGIC.len()];
+        if file.read_exact(magic).is_err() || magic != MAGIC {
             return Err(refused("it holds no samples of a picture".to_owned()));
         }
+        let mut wanted = head.len() as u64;
+        if length < wanted {
+            return Err(cut_off(wanted));
+        }
+        file.read_exact(&mut head[MAGIC.len()..]).map_err(unread)?;
         let number = |at: usize| {
             let bytes = head[MAGIC.len() + at..][..4].try_into();
             u32::from_le_bytes(bytes.expect("four bytes"))
@@ -280,6 +291,10 @@ impl Past {
             return Err(refused(format!(
                 "wanted at most {MAX_WORDS_BYTES} bytes of words, found {words_bytes}"
             )));
+        }
+        wanted += u64::from(words_bytes) + PathSums::HEAD_BYTES as u64;
+        if length < wanted {
+            return Err(cut_off(wanted));
         }
         let mut words = vec![0; words_bytes as usize];
         file.read_exact(&mut words).map_err(unread)?;

@@ -52,6 +52,7 @@ mod signals;
 mod small_file;
 mod stdin;
 mod surface;
+mod technique_hints;
 mod thumbnails;
 mod timings;
 mod unfinished;

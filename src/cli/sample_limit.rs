@@ -10,7 +10,7 @@ pub fn hint(error: &Error) -> Cow<'static, str> {
             samples_per_voxel: Some(most),
             follows_light: true,
             ..
-        } => format!(
+        } if *most > 0.0 => format!(
             "--shadows volume follows light once; --samples-per-voxel {} stays below it",
             rounded_down(*most)
         )

@@ -114,7 +114,9 @@ impl View<'_> {
     /// ```
     ///
     /// four steps a turn, each after a search for the next one that counts, which goes round for macro cells.
-    fn turns_of_light(&self, variant: &ShaderVariant, functions: Functions) -> f64 {
+    ///
+    /// n is `part` of what the samples per voxel make it.
+    fn turns_of_light(&self, variant: &ShaderVariant, functions: Functions, part: f64) -> f64 {
         if self.settings.single_scattering != Some(SingleScattering::March) {
             return 0.0;
         }
@@ -134,7 +136,7 @@ impl View<'_> {
         let lamps = self.settings.path.lamps.iter();
         let all = ways.chain(lamps.map(|_| self.grid.diagonal()));
         let turns = all.map(|length| {
-            let steps = length / self.step_world() + 1.0;
+            let steps = part * length / self.step_world() + 1.0;
             steps * (7.0 / 8.0 + mask + search) + 6.0 + clip
         });
         turns.sum()
@@ -198,24 +200,35 @@ impl View<'_> {
             return Ok(());
         }
         let turns = turns_per_sample(self.settings, variant, volumes, functions) as f64;
-        let of_light = self.turns_of_light(variant, functions);
+        let of_light = |part| self.turns_of_light(variant, functions, part);
         let clip = 2.0 * self.settings.clip_planes.len() as f64;
-        let limit = (f64::from(max_loop_turns) - SPARE - clip).max(0.0) / (turns + of_light);
+        let room = (f64::from(max_loop_turns) - SPARE - clip).max(0.0);
+        let limit = room / (turns + of_light(1.0));
         if wanted <= limit {
             return Ok(());
         }
         let is_by_voxels = self.settings.technique.draws_stacks();
         // Steps of rays and of light are longer together.
-        let part = match of_light > 0.0 {
-            true => (limit / wanted).sqrt(),
-            false => limit / wanted,
-        };
+        let fits = |part: f64| part * wanted * (turns + of_light(part)) <= room;
+        let part = largest_part(fits);
         let samples_per_voxel = (!is_by_voxels).then_some(self.settings.samples_per_voxel * part);
         Err(Error::LoopsEnd {
             wanted,
             limit,
             samples_per_voxel,
-            follows_light: of_light > turns,
+            follows_light: of_light(1.0) > turns,
         })
     }
+}
+
+/// The largest number from 0 to 1 that fits, where all below one that fits do: by halving, so that it fits itself.
+fn largest_part(fits: impl Fn(f64) -> bool) -> f64 {
+    let halved = (0..60).fold([0.0, 1.0], |[low, high], _| {
+        let middle = 0.5 * (low + high);
+        match fits(middle) {
+            true => [middle, high],
+            false => [low, middle],
+        }
+    });
+    halved[0]
 }

@@ -164,6 +164,11 @@ fn a_file_that_holds_no_samples_is_refused() {
         (with(&|b| b[at] = 9), "samples of version 9"),
         (with(&|b| b[at + 7] = 255), "bytes of words"),
         (with(&|b| b[at + 8] = b'!'), "its words"),
+        (
+            with(&|b| b.truncate(at)),
+            "wanted 26 bytes or more, found 18",
+        ),
+        (with(&|b| b.truncate(at + 13)), "bytes or more, found 31"),
         (with(&|b| b.truncate(b.len() - 1)), "wanted"),
         (with(&|b| b.push(0)), "wanted"),
         (

@@ -54,6 +54,7 @@ mod manuals;
 mod memory;
 mod messages;
 mod messages_inputs;
+mod messages_scattering;
 mod mixed;
 mod moved_pole;
 mod opacity;

@@ -161,6 +161,6 @@ fn keys_of_a_medium_are_drawn_by_what_scatters_and_named_elsewhere() {
     assert!(refused.err.contains("three colours"), "{refused:?}");
     let ran = run("--tf grey.json -o a.png");
     ran.assert_done();
-    let note = "extinction, albedo, emission, phase of the transfer function are for --technique pathtrace and --scattering single";
+    let note = "extinction, albedo, emission and phase of the transfer function are for --technique pathtrace and --scattering single";
     assert!(ran.err.contains(note), "{}", ran.err);
 }

@@ -332,6 +332,12 @@ impl ClassificationFlags {
 
     /// What the files of these words say of matter that scatters light; `None` too where they are wrong.
     pub fn medium(&self) -> Option<Box<MediumTransfer>> {
+        self.function_of_files().medium
+    }
+
+    /// The function of `--tf` with the parts of `--color-tf` and `--opacity-tf`; what no file says, and what is wrong, is
+    /// empty.
+    pub fn function_of_files(&self) -> TransferFunction {
         let part = |part: &Option<Inlined>| self.part(part).ok().flatten();
         let mut function = self.function_of_file().ok().flatten().unwrap_or(NOTHING);
         if let Some(color) = part(&self.color_function) {
@@ -340,7 +346,7 @@ impl ClassificationFlags {
         if let Some(opacity) = part(&self.opacity_function) {
             function = function.with_opacity_of(&opacity);
         }
-        function.medium
+        function
     }
 
     /// The function of a file that gives a part.

@@ -10,6 +10,7 @@ mod classification;
 mod color;
 mod component;
 mod cuts;
+mod darkness;
 mod denoise;
 mod devices;
 mod empty_space;
@@ -18,6 +19,7 @@ mod field;
 mod focus;
 mod gradient_filter;
 mod gradients;
+mod idle;
 mod inlined;
 mod input;
 mod intermediate;
@@ -229,6 +231,12 @@ impl SceneFlags {
                 "--background COLOR lies behind pictures of all techniques",
             ));
         }
+        if self.picture.shows_sky() && self.path.environment.is_none() {
+            return Err(Error::usage(
+                "--background environment shows the light of --environment, and there is none",
+                "--environment R,G,B or a picture is a sky, --background COLOR needs none",
+            ));
+        }
         if self.picture.tone() != Tone::default() && settings.color_space == ColorSpace::Display {
             return Err(Error::usage(
                 "--tone and --exposure are of linear light, and --color-space display has none",
@@ -294,18 +302,12 @@ impl SceneFlags {
         is_one && self.classification.wants_slabs() && !self.sampling.says_how()
     }
 
-    /// Flags that change nothing under the others, a sentence each.
+    /// Flags that change nothing under the others, and light that is missing, a sentence each.
     pub fn idle(&self) -> Vec<String> {
         let mode = self.sampling.mode.unwrap_or_default();
-        let of_light = match self.traces_paths() {
-            true => Vec::new(),
-            false if self.path.scatters_once() => self.path.idle_of_rays(),
-            false => [self.light.idle(mode), self.path.idle()].concat(),
-        };
         let topics = [
             self.sampling.idle(),
             self.modes.idle(mode, self.traces_paths()),
-            of_light,
             self.gradient.idle(self.may_have_gradients()),
             self.camera.idle(self.section.section.is_some()),
             self.annotate.idle(),
@@ -318,17 +320,8 @@ impl SceneFlags {
             notes.push("--frame has no effect with --section, which shows all of its plane");
         }
         let notes = notes.into_iter().map(str::to_owned);
-        notes.chain(self.idle_medium()).collect()
-    }
-
-    /// Keys of the function that are for pictures of light that scatters.
-    fn idle_medium(&self) -> Option<String> {
-        if self.traces_paths() || self.path.scatters_once() {
-            return None;
-        }
-        let keys = self.classification.medium()?.keys().join(", ");
-        Some(format!(
-            "{keys} of the transfer function are for --technique pathtrace and --scattering single: drawn are its colour and opacity"
-        ))
+        let of_light = self.idle_of_light(mode).into_iter();
+        let notes = notes.chain(of_light).chain(self.idle_medium());
+        notes.chain(self.darkness()).collect()
     }
 }

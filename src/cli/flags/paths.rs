@@ -1,5 +1,6 @@
 //! Path tracing: flags to [`PathTracing`].
 
+use super::idle::no_effect;
 use super::numbers::positive;
 use super::{EnvironmentWord, Error, FocusWord, LightFlags, Numbers, ScatteringWord, finite};
 use crate::technique::Light;
@@ -176,37 +177,70 @@ impl PathFlags {
         }
     }
 
-    /// Flags that change nothing where light is scattered once without paths.
-    pub fn idle_of_rays(&self) -> Vec<&'static str> {
-        let of_paths = Self {
-            scattering: None,
-            density_scale: None,
-            albedo: None,
-            phase: None,
-            environment: None,
-            environment_strength: None,
-            ..self.clone()
-        };
-        match of_paths == Self::default() {
-            true => Vec::new(),
-            false => vec![
-                "--spp, --noise, --seconds, --seed, --bounces, --environment-turn, --surface-scattering, --f0, --roughness, --aperture-radius, --focus-distance and --denoise-picture have no effect without --technique pathtrace",
-            ],
-        }
+    /// Flags that change nothing where paths are traced.
+    pub(super) fn idle_of_paths(&self) -> Option<String> {
+        let is_idle = self.roughness.is_some() && self.f0.is_none();
+        no_effect(&[("--roughness", is_idle)], "without --f0")
     }
 
-    /// Flags that change nothing where no paths are traced.
-    pub fn idle(&self) -> Vec<&'static str> {
-        let given = Self {
-            scattering: None,
-            ..self.clone()
-        };
-        match given == Self::default() {
-            true => Vec::new(),
-            false => vec![
-                "--spp, --noise, --seconds, --seed, --bounces, --density-scale, --albedo, --phase, --environment, --environment-strength, --environment-turn, --surface-scattering, --f0, --roughness, --aperture-radius, --focus-distance and --denoise-picture have no effect without --technique pathtrace",
-            ],
-        }
+    /// Flags that change nothing where light is scattered once without paths.
+    pub(super) fn idle_of_rays(&self) -> Option<String> {
+        let (of_paths, _) = self.given();
+        no_effect(&of_paths, "without --technique pathtrace")
+    }
+
+    /// Flags that change nothing where light is not scattered.
+    pub(super) fn idle(&self) -> Vec<String> {
+        let (_, of_medium) = self.given();
+        let why = "without --technique pathtrace or --scattering single";
+        let of_medium = no_effect(&of_medium, why);
+        self.idle_of_rays().into_iter().chain(of_medium).collect()
+    }
+
+    /// Which flags are there: those of paths alone, and those of all light that scatters.
+    fn given(&self) -> ([(&'static str, bool); 12], [(&'static str, bool); 5]) {
+        let Self {
+            scattering: _,
+            spp,
+            noise,
+            seconds,
+            seed,
+            bounces,
+            density_scale,
+            albedo,
+            phase,
+            environment,
+            environment_strength,
+            environment_turn,
+            surface_scattering,
+            f0,
+            roughness,
+            aperture_radius,
+            focus_distance,
+            denoise_picture,
+        } = self;
+        let of_paths = [
+            ("--spp", spp.is_some()),
+            ("--noise", noise.is_some()),
+            ("--seconds", seconds.is_some()),
+            ("--seed", seed.is_some()),
+            ("--bounces", bounces.is_some()),
+            ("--environment-turn", environment_turn.is_some()),
+            ("--surface-scattering", surface_scattering.is_some()),
+            ("--f0", f0.is_some()),
+            ("--roughness", roughness.is_some()),
+            ("--aperture-radius", aperture_radius.is_some()),
+            ("--focus-distance", focus_distance.is_some()),
+            ("--denoise-picture", *denoise_picture),
+        ];
+        let of_medium = [
+            ("--density-scale", density_scale.is_some()),
+            ("--albedo", albedo.is_some()),
+            ("--phase", phase.is_some()),
+            ("--environment", environment.is_some()),
+            ("--environment-strength", environment_strength.is_some()),
+        ];
+        (of_paths, of_medium)
     }
 }
 

@@ -11,11 +11,12 @@ use super::{
     shadows::HALF_ANGLE,
 };
 use crate::{
+    cli::technique_hints,
     picture::ColorSpace,
     points::FieldKernel,
     shaders::MAX_CLIP_PLANES,
     technique::{
-        ClipPlane, DEFAULT_DIM, Filter, FilterBy, Jitter, Lattice, Mode, Order, Settings,
+        self, ClipPlane, DEFAULT_DIM, Filter, FilterBy, Jitter, Lattice, Mode, Order, Settings,
         Technique,
         splat::{Sheets, Splat},
     },
@@ -206,9 +207,13 @@ pub fn check_ways(settings: &Settings) -> Result<(), Error> {
         Lattice::Bresenham => MAIN_AXIS,
         _ => WAYS,
     };
-    settings
-        .check_ways()
-        .map_err(|problem| Error::usage(problem.to_string(), hint))
+    settings.check_ways().map_err(|problem| {
+        let hint = match problem {
+            technique::Error::OutOfRange { .. } => technique_hints::hint(&problem),
+            _ => hint,
+        };
+        Error::usage(problem.to_string(), hint)
+    })
 }
 
 impl SamplingFlags {

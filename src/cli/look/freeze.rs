@@ -83,7 +83,9 @@ impl<'a> Chosen<'a> {
         if scene.light.shading.is_none() && !scene.light.is_lit(self.mode) {
             scene.light.shading = Some(ShadingWord::None);
         }
-        scene.sampling.samples_per_voxel.get_or_insert(1.0);
+        if scene.sampling.has_steps() {
+            scene.sampling.samples_per_voxel.get_or_insert(1.0);
+        }
         if self.height_factor != 1.0 {
             scene.camera.exaggerate.get_or_insert(self.height_factor);
         }

@@ -2,6 +2,7 @@
 //! for ever. SE: the standard error of a mean.
 
 mod camera;
+mod chandrasekhar;
 mod isosurfaces;
 mod lamps;
 mod layers;
@@ -224,29 +225,6 @@ fn layers_under_an_even_sky_reflect_and_transmit_what_tables_say() {
         let found = radiance(path, depth, cosine);
         let wanted = reflected + transmitted - (-depth / cosine).exp();
         assert_near(&format!("{depth} {albedo} {g} {cosine}"), found, wanted);
-    }
-}
-
-/// Chandrasekhar 1950, by his H functions: L = albedo / 4 mu0 / (mu + mu0) H(mu) H(mu0) of matter without an end.
-#[test]
-fn matter_without_an_end_reflects_what_chandrasekhar_says() {
-    for (albedo, cosine, cosine_of_light, wanted) in [
-        (0.9, 1.0, 1.0, 0.385_072),
-        (0.9, 0.5, 0.8, 0.376_479),
-        (0.99, 0.7, 0.3, 0.244_503),
-    ] {
-        let path = PathTracing {
-            samples: 24,
-            albedo,
-            lights: vec![light(at(cosine_of_light, 1.0))],
-            ..PathTracing::default()
-        };
-        let found = radiance(path, 60.0, cosine);
-        assert_near(
-            &format!("{albedo} {cosine} {cosine_of_light}"),
-            found,
-            wanted,
-        );
     }
 }
 

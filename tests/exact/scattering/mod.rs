@@ -1,5 +1,6 @@
 //! Light that is scattered once, by rays: closed forms of layers and of the sums that rays make of them, and random paths.
 
+mod limits;
 mod medium;
 mod points;
 mod references;
