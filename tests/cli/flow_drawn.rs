@@ -284,7 +284,7 @@ fn particles_that_go_nowhere_and_what_was_said_already_are_said_once() {
     assert!(said.contains("no line goes anywhere"), "{said}");
     let why = "the picture is empty: no line, map or point is seen, and the volume is not drawn";
     assert!(said.contains(why), "{said}");
-    let said = render(&format!("{} --show vapor", fixture("wrf.nc")));
+    let said = render("phantom:storm,n=16 --show vapor");
     let notes: Vec<&str> = said.lines().collect();
     for (at, note) in notes.iter().enumerate() {
         assert!(!notes[..at].contains(note), "twice: {note}");
@@ -336,7 +336,7 @@ fn one_word_stands_for_the_flags_that_it_says() {
         .run(&format!(
             "render phantom:head,n=8 --show vapor -o c.png {fixed}"
         ))
-        .assert_refused(2, &["--show", "temperature"]);
+        .assert_refused(2, &["--show", "no water vapour"]);
 }
 
 pub fn fixture(name: &str) -> String {

@@ -131,11 +131,10 @@ fn a_film_of_a_forecast_goes_through_its_dates() {
             .collect();
         for pair in frames.windows(2) {
             assert!(pair[0].0 != pair[1].0, "{word}: two frames are the same");
-            let (date, [_, _, _, bottom]) = difference(&pair[0].1, &pair[1].1);
-            assert!(
-                date > 10 && bottom < SIZE[1] / 4,
-                "{word}: {date} pixels of dates differ"
-            );
+            // Ink that is dark on light and light on dark may change below.
+            let [before, after] = [&pair[0].1, &pair[1].1].map(|all| &all[..SIZE[0] * SIZE[1] / 4]);
+            let (date, _) = difference(before, after);
+            assert!(date > 10, "{word}: {date} pixels of dates differ");
         }
     }
 }
