@@ -104,6 +104,9 @@ const MOST_PATHS: i64 = 1 << 20;
 /// Where something else ends the picture.
 const MOST_UNASKED: u32 = 4096;
 
+/// A flag, and whether it is there.
+type Given = (&'static str, bool);
+
 impl PathFlags {
     /// What paths are, with the lights that others name; without [`Self::phase`], which a function may have too.
     pub fn path(&self, light: &LightFlags, shows_sky: bool) -> Result<PathTracing, Error> {
@@ -198,7 +201,7 @@ impl PathFlags {
     }
 
     /// Which flags are there: those of paths alone, and those of all light that scatters.
-    fn given(&self) -> ([(&'static str, bool); 12], [(&'static str, bool); 5]) {
+    fn given(&self) -> ([Given; 12], [Given; 5]) {
         let Self {
             scattering: _,
             spp,

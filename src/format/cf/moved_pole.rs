@@ -91,7 +91,7 @@ fn corners(
         };
         let [i, j] = [end(right, nx)?, end(up, ny)?];
         let at = usize::try_from(j.checked_mul(nx)?.checked_add(i)?).ok()?;
-        let voxel = DVec3::new(i as f64, j as f64, 0.0) + 0.5;
+        let voxel = DVec3::new(i as f64 + 0.5, j as f64 + 0.5, 0.5);
         let place = place.world_from_voxel.transform_point3(voxel);
         Some(MapCorner {
             latitude_longitude: [*latitudes.get(at)?, *longitudes.get(at)?],

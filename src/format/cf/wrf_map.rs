@@ -60,7 +60,7 @@ fn corner(arrays: &dyn Arrays, [right, up]: [u64; 2]) -> Option<MapCorner> {
     let at = |name| {
         mean(arrays, name, |axis, size| {
             let end = if axis == 0 { right } else { up };
-            (end * size.saturating_sub(1), 1)
+            (end.saturating_mul(size.saturating_sub(1)), 1)
         })
     };
     let latitude_longitude = [at("XLAT")?, at("XLONG")?];
@@ -110,7 +110,7 @@ fn mean(arrays: &dyn Arrays, name: &str, part: impl Fn(usize, u64) -> (u64, u64)
     let from_end = variable.dimensions.len().checked_sub(2)?;
     let place = |(k, size): (usize, u64)| match k < from_end {
         true => (0, 1),
-        false => part(from_end + 1 - k, size),
+        false => part(usize::from(k == from_end), size),
     };
     let sizes = variable.dimensions.iter().map(|dimension| dimension.size);
     let (start, count): (Vec<u64>, Vec<u64>) = sizes.enumerate().map(place).unzip();
