@@ -20,7 +20,7 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
         return;
     }
     let ray = pixel_ray(vec2<f32>(pixel) + 0.5);
-    let list = list_of(tile.corner);
+    let list = list_of(pixel);
     let reach = select(EXTREME_SQUARE, frame.splat_reach * frame.splat_reach, frame.extreme_sign == 0.0);
     var so_far = begin();
     if frame.is_first_brick == 0u {
@@ -34,7 +34,8 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
             continue;
         }
         so_far.samples += 1.0;
-        so_far = add(so_far, point.value, Segment(0.0, point.density * exp(-0.5 * square)));
+        let density = view_points.all[point].density * exp(-0.5 * square);
+        so_far = add(so_far, view_points.all[point].value, Segment(0.0, density));
     }
     textureStore(accumulation, pixel, vec4(so_far.value, so_far.weight, -1.0, so_far.samples));
 }

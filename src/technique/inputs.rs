@@ -77,7 +77,7 @@ impl Inputs<'_> {
         given.push(("sky", Resource::Storage(sky)));
         if let Some(points) = self.points {
             given.push(("view_points", Resource::Storage(points.points())));
-            given.push(("tile_points", Resource::Storage(points.tiles())));
+            given.push(("block_points", Resource::Storage(points.blocks())));
         }
         if let Some(field) = self.field {
             given.push(("field_points", Resource::Storage(field.points())));

@@ -62,6 +62,14 @@ fn points_are_splatted_without_a_flag_and_what_was_chosen_is_said() {
     npy.extend(numbers.flat_map(f32::to_le_bytes));
     folder.file("p6.npy", npy);
     assert!(drawn(&folder, "p6.npy --points").0 > 10);
+    // Without the word it is an image, and both ways to that mistake say the word.
+    let info = folder.run("info p6.npy");
+    info.assert_done();
+    let note = "--points takes them as scattered points";
+    assert!(info.err.contains(note), "{}", info.err);
+    folder
+        .run(&format!("render p6.npy --points-as splats -o p.npy {SMALL}"))
+        .assert_refused(2, &["--points takes the rows of an array"]);
     for mode in ["mip", "minip", "average", "xray"] {
         assert!(
             drawn(&folder, &format!("p.csv --mode {mode}")).0 > 50,

@@ -111,6 +111,22 @@ impl InputFlags {
     }
 }
 
+impl InputFlags {
+    /// `word` beside an input that was not found to be points.
+    fn not_of_points(&self, word: &str) -> Error {
+        let is_array = self
+            .file()
+            .is_some_and(|file| file.extension().is_some_and(|ending| ending == "npy"));
+        Error::usage(
+            format!("{word} is for scattered points, and the input is a volume"),
+            match is_array {
+                true => "--points takes the rows of an array as x, y, z, value[, std[, weight]]",
+                false => "leave it out",
+            },
+        )
+    }
+}
+
 impl PointLookFlags {
     /// What stands for a point, where the input is points.
     fn word(&self) -> PointsWord {
@@ -156,16 +172,10 @@ impl SceneFlags {
         // Of thumbnails the input is not known yet.
         let is_known = self.input.path.is_some();
         if look.field.is_some() && is_known && !self.input.are_points() {
-            return Err(Error::usage(
-                "--field is for scattered points, and the input is a volume",
-                "leave it out",
-            ));
+            return Err(self.input.not_of_points("--field"));
         }
         if look.points_as.is_some() && is_known && !self.input.are_points() {
-            return Err(Error::usage(
-                "--points-as is for scattered points, and the input is a volume",
-                "leave it out",
-            ));
+            return Err(self.input.not_of_points("--points-as"));
         }
         Ok(())
     }

@@ -285,9 +285,14 @@ fn header(array: &Array, kind: Kind, fortran_order: bool) -> Result<Header, Prob
     ];
     if fortran_order {
         notes.push(
-            "the array is in Fortran order, which no longer exchanges its axes: until now the first was taken as x"
-                .to_owned(),
+            "the array is in Fortran order: its first axis is that of the shape's first number all the same".to_owned(),
         );
+    }
+    let [row, ..] = array.dims;
+    if array.axes.len() == 2 && !fortran_order && (4..=6).contains(&row) {
+        notes.push(format!(
+            "rows of {row} numbers are an image here; --points takes them as scattered points, x, y, z, value[, std[, weight]]"
+        ));
     }
     if kind.is_bool {
         notes.push("booleans are read as 0 and 1".to_owned());

@@ -12,7 +12,7 @@ const POINT_BYTES: usize = 32;
 #[derive(Debug)]
 pub struct GpuViewPoints {
     points: Buffer,
-    tiles: Buffer,
+    blocks: Buffer,
 }
 
 impl GpuViewPoints {
@@ -35,7 +35,7 @@ impl GpuViewPoints {
             ]
         };
         let points: Vec<f32> = view.points.iter().flat_map(point).collect();
-        let tiles: Vec<u32> = view.starts.iter().chain(&view.lists).copied().collect();
+        let blocks: Vec<u32> = view.starts.iter().chain(&view.lists).copied().collect();
         let made = |bytes: &[u8], name| {
             let count = bytes.len().max(POINT_BYTES) as u64;
             let buffer = Buffer::new(gpu, count, Usage::STORAGE_BUFFER, Memory::Upload, name)?;
@@ -44,7 +44,7 @@ impl GpuViewPoints {
         };
         Ok(Self {
             points: made(bytemuck::cast_slice(&points), "points of a view")?,
-            tiles: made(bytemuck::cast_slice(&tiles), "points of tiles")?,
+            blocks: made(bytemuck::cast_slice(&blocks), "points of blocks")?,
         })
     }
 
@@ -53,8 +53,8 @@ impl GpuViewPoints {
         &self.points
     }
 
-    /// Where the list of each tile begins, and the lists.
-    pub(in crate::technique) fn tiles(&self) -> &Buffer {
-        &self.tiles
+    /// Where the list of each block begins, and the lists.
+    pub(in crate::technique) fn blocks(&self) -> &Buffer {
+        &self.blocks
     }
 }

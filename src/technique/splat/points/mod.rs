@@ -8,8 +8,8 @@
 //! composite      depth sigma(f) sqrt(2 pi) h (h / h')^2 e^(-b^2 / 2), from front to back by the depth of centres
 //! ```
 //!
-//! A view has its points sorted, and a list of those that each tile of 8 x 8 pixels may see ([`ViewPoints`]); a compute
-//! pass goes through the list of its tile. Opacity does not depend on the order of points, colour does.
+//! A view has its points sorted, and a list of those that each block of 4 x 4 pixels may see ([`ViewPoints`]); a compute
+//! pass goes through the list of its block. Opacity does not depend on the order of points, colour does.
 
 mod gpu;
 pub(super) mod reference;

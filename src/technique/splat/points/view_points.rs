@@ -1,4 +1,4 @@
-//! Points as a view sees them: sorted by depth, and listed by the tiles of the picture that they may be seen in.
+//! Points as a view sees them: sorted by depth, and listed by the blocks of the picture that they may be seen in.
 //!
 //! ```text
 //! depth = n . (x - eye)       pixel at depth z: as large as that of the plane at z
@@ -9,11 +9,10 @@
 //! and the forward direction.
 
 use crate::points::Points;
+use crate::shaders::LIST_PIXELS;
 use crate::technique::{Error, Recording, View};
 use glam::{DVec2, DVec3, dvec2};
 
-/// Pixels along the side of a tile.
-pub(super) const TILE_PIXELS: u32 = 8;
 /// By how much of the lengths in it a ray of the shader passes a point elsewhere: half an ulp of its origin and of the centre,
 /// and of their difference; three of the direction's norm, and two of products.
 const ROUNDING: f64 = 8.0 * f32::EPSILON as f64;
@@ -38,7 +37,7 @@ pub struct ViewPoint {
 pub struct ViewPoints {
     /// Those that may be seen, from front to back; of equal depths the first of the file first.
     pub points: Vec<ViewPoint>,
-    /// For each tile, row by row, where its list begins, and the end of the last.
+    /// For each block, row by row, where its list begins, and the end of the last.
     pub starts: Vec<u32>,
     /// The lists: indices of points, ascending.
     pub lists: Vec<u32>,
@@ -63,7 +62,7 @@ impl ViewPoints {
             .collect();
         // Stable: ties stay as the file has them.
         seen.sort_by(|a, b| a.depth.total_cmp(&b.depth));
-        let [starts, lists] = lists(&seen, eye.tiles)?;
+        let [starts, lists] = lists(&seen, eye.blocks)?;
         let shown = |seen: &Seen| {
             let world = points.places()[seen.index] - center;
             let std = f64::from(points.stds()[seen.index]);
@@ -107,9 +106,9 @@ impl ViewPoints {
 
     /// The points that a pixel of a picture so wide may see, from front to back.
     pub fn of_pixel(&self, pixel: [u32; 2], width: u32) -> impl Iterator<Item = &ViewPoint> {
-        let [x, y] = pixel.map(|n| n / TILE_PIXELS);
-        let tile = (x + y * width.div_ceil(TILE_PIXELS)) as usize;
-        let list = self.starts[tile] as usize..self.starts[tile + 1] as usize;
+        let [x, y] = pixel.map(|n| n / LIST_PIXELS);
+        let block = (x + y * width.div_ceil(LIST_PIXELS)) as usize;
+        let list = self.starts[block] as usize..self.starts[block + 1] as usize;
         self.lists[list].iter().map(|&i| &self.points[i as usize])
     }
 }
@@ -141,7 +140,7 @@ struct EyeSpace {
     /// The upper left corner of the picture, in these lengths: in perspective at depth 1.
     corner: DVec2,
     /// How many there are across and down.
-    tiles: [u32; 2],
+    blocks: [u32; 2],
     low_pass: f64,
 }
 
@@ -167,7 +166,7 @@ impl EyeSpace {
             across,
             pixel: dvec2(dx.length(), dy.length()),
             corner: dvec2(on_plane.dot(across[0]), on_plane.dot(across[1])),
-            tiles: view.extent_pixels.map(|n| n.div_ceil(TILE_PIXELS)),
+            blocks: view.extent_pixels.map(|n| n.div_ceil(LIST_PIXELS)),
             low_pass: view.settings.splat.low_pass,
         }
     }
@@ -179,8 +178,8 @@ struct Seen {
     depth: f64,
     /// h'.
     std: f64,
-    /// Columns and rows of tiles, the ends not included.
-    tiles: [[u32; 2]; 2],
+    /// Columns and rows of blocks, the ends not included.
+    blocks: [[u32; 2]; 2],
 }
 
 impl Seen {
@@ -200,23 +199,23 @@ impl Seen {
                 false => [lateral - radius, lateral + radius],
             };
             let pixels = ends.map(|end| (end - eye.corner[axis]) / eye.pixel[axis]);
-            let tile = f64::from(TILE_PIXELS);
-            let most = f64::from(eye.tiles[axis]);
-            let (first, end) = ((pixels[0] / tile).floor(), (pixels[1] / tile).ceil());
-            let tiles = [first, end].map(|n| n.clamp(0.0, most) as u32);
-            (tiles[0] < tiles[1]).then_some(tiles)
+            let block = f64::from(LIST_PIXELS);
+            let most = f64::from(eye.blocks[axis]);
+            let (first, end) = ((pixels[0] / block).floor(), (pixels[1] / block).ceil());
+            let blocks = [first, end].map(|n| n.clamp(0.0, most) as u32);
+            (blocks[0] < blocks[1]).then_some(blocks)
         };
-        let tiles = [of_axis(0)?, of_axis(1)?];
+        let blocks = [of_axis(0)?, of_axis(1)?];
         Some(Self {
             index,
             depth,
             std,
-            tiles,
+            blocks,
         })
     }
 
-    fn each_tile(&self, across: u32) -> impl Iterator<Item = usize> {
-        let [columns, rows] = self.tiles;
+    fn each_block(&self, across: u32) -> impl Iterator<Item = usize> {
+        let [columns, rows] = self.blocks;
         (rows[0]..rows[1])
             .flat_map(move |y| (columns[0]..columns[1]).map(move |x| (x + y * across) as usize))
     }
@@ -231,19 +230,19 @@ fn tangents(u: f64, z: f64, r: f64) -> [f64; 2] {
     [(angle - half).tan(), (angle + half).tan()]
 }
 
-/// Where the list of each tile begins, and the lists.
+/// Where the list of each block begins, and the lists.
 fn lists(seen: &[Seen], [across, down]: [u32; 2]) -> Result<[Vec<u32>; 2], Error> {
     let mut starts = vec![0_u64; (across * down) as usize + 1];
-    for tile in seen.iter().flat_map(|seen| seen.each_tile(across)) {
-        starts[tile + 1] += 1;
+    for block in seen.iter().flat_map(|seen| seen.each_block(across)) {
+        starts[block + 1] += 1;
     }
-    for tile in 1..starts.len() {
-        starts[tile] += starts[tile - 1];
+    for block in 1..starts.len() {
+        starts[block] += starts[block - 1];
     }
     let count = starts[starts.len() - 1];
     Error::unless(
         count <= MOST_LISTED,
-        "the number of points in tiles of the picture",
+        "the number of points in blocks of the picture",
         "2^28 at most: a smaller picture has fewer",
         count as f64,
     )?;
@@ -251,9 +250,9 @@ fn lists(seen: &[Seen], [across, down]: [u32; 2]) -> Result<[Vec<u32>; 2], Error
     let mut next = starts.clone();
     let mut lists = vec![0; count as usize];
     for (i, seen) in seen.iter().enumerate() {
-        for tile in seen.each_tile(across) {
-            lists[next[tile] as usize] = i as u32;
-            next[tile] += 1;
+        for block in seen.each_block(across) {
+            lists[next[block] as usize] = i as u32;
+            next[block] += 1;
         }
     }
     Ok([starts, lists])
