@@ -44,7 +44,9 @@ impl From<technique::Error> for Failure {
             Error::TooManySamples { wanted, limit } => {
                 (SV_E_LIMIT, (*wanted as u64, (*limit).into()))
             }
-            Error::LoopsEnd { wanted, limit, .. } => (SV_E_LIMIT, (*wanted as u64, *limit as u64)),
+            Error::LoopsEnd { wanted, limit, .. } | Error::SplatLoopsEnd { wanted, limit } => {
+                (SV_E_LIMIT, (*wanted as u64, *limit as u64))
+            }
             Error::LevelCount { found, limit: most } => (SV_E_LIMIT, limit(*found, *most)),
             Error::TooManyLights {
                 wanted,

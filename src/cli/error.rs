@@ -150,6 +150,7 @@ impl From<offscreen::Error> for Error {
             offscreen::Error::Technique(
                 error @ (technique::Error::TooManySamples { .. }
                 | technique::Error::LoopsEnd { .. }
+                | technique::Error::SplatLoopsEnd { .. }
                 | technique::Error::SlabsTooLong { .. }),
             ) => Self::Limit {
                 message: error.to_string(),

@@ -23,6 +23,10 @@ pub fn hint(error: &Error) -> Cow<'static, str> {
             rounded_down(*most)
         )
         .into(),
+        Error::SplatLoopsEnd { .. } => {
+            "a larger --size, a smaller --splat-std and --splat-low-pass 0 have fewer; --device reference has no such limit"
+                .into()
+        }
         Error::LoopsEnd { .. } => "--device reference has no such limit".into(),
         Error::SlabsTooLong { .. } => "more --samples-per-voxel stay below it".into(),
         _ => "fewer --samples-per-voxel stay below it".into(),

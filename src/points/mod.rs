@@ -148,6 +148,20 @@ impl Points {
         f64::from(distances::median(self.stds.clone()))
     }
 
+    /// The most points in one cube as wide as the median standard deviation: there the outlines of their splats lie one
+    /// upon the other.
+    pub fn most_at_one_place(&self) -> usize {
+        let edge = self.median_std();
+        let cube = |place: &DVec3| (*place / edge).floor().to_array().map(f64::to_bits);
+        let mut cubes: Vec<_> = self.places.iter().map(cube).collect();
+        cubes.sort_unstable();
+        cubes
+            .chunk_by(|a, b| a == b)
+            .map(<[_]>::len)
+            .max()
+            .unwrap_or(1)
+    }
+
     /// Smallest and largest value.
     pub fn value_range(&self) -> [f64; 2] {
         let fold = |of: fn(f32, f32) -> f32| self.values.iter().copied().reduce(of);
@@ -162,6 +176,16 @@ fn default_stds(places: &[DVec3]) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn points_at_one_place_are_those_within_a_standard_deviation() {
+        let cluster = (0..7).map(|i| DVec3::splat(0.1 * f64::from(i)));
+        let apart = (1..30).map(|i| DVec3::X * 2.5 * f64::from(i));
+        let places: Vec<_> = cluster.chain(apart).collect();
+        let count = places.len();
+        let points = Points::new(places, vec![1.0; count], Some(vec![1.0; count]), None);
+        assert_eq!(points.expect("points").most_at_one_place(), 7);
+    }
 
     #[test]
     fn stretched_points_are_as_wide_as_their_new_places_ask_for_unless_it_is_given() {

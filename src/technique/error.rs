@@ -29,6 +29,16 @@ pub enum Error {
         /// Whether most of the turns are those of light that is followed from each sample.
         follows_light: bool,
     },
+    /// The driver would leave splats out.
+    #[error(
+        "{wanted:.0} splats of voxels lie near a ray, and this driver ends its loops after {limit:.0} of them"
+    )]
+    SplatLoopsEnd {
+        /// Near the longest ray.
+        wanted: f64,
+        /// How many there are turns for.
+        limit: f64,
+    },
     /// Compositing classifies every sample.
     #[error("compositing needs a transfer function")]
     NoTransferFunction,

@@ -47,6 +47,8 @@ fn points_are_splatted_without_a_flag_and_what_was_chosen_is_said() {
     }
     folder.file("p.tsv", table('\t'));
     assert_eq!(drawn(&folder, "p.tsv").0, count);
+    folder.file("semicolons.csv", table(';'));
+    assert_eq!(drawn(&folder, "semicolons.csv").0, count);
     let (wide, ran) = drawn(&folder, "p.csv --splat-std 4");
     assert!(
         wide > count && !ran.err.contains("distances"),
@@ -68,7 +70,9 @@ fn points_are_splatted_without_a_flag_and_what_was_chosen_is_said() {
     let note = "--points takes them as scattered points";
     assert!(info.err.contains(note), "{}", info.err);
     folder
-        .run(&format!("render p6.npy --points-as splats -o p.npy {SMALL}"))
+        .run(&format!(
+            "render p6.npy --points-as splats -o p.npy {SMALL}"
+        ))
         .assert_refused(2, &["--points takes the rows of an array"]);
     for mode in ["mip", "minip", "average", "xray"] {
         assert!(
@@ -147,6 +151,7 @@ fn what_points_do_not_have_is_refused_by_name() {
         ("p.csv --mode mip --aov depth", "--aov depth"),
         ("p.csv --point-columns x=", "--point-columns"),
         ("phantom:sphere,n=8 --points", "--points"),
+        ("p.csv --map", "--points-as spheres"),
     ] {
         let ran = folder.run(&format!("render {words} -o q.exr {SMALL}"));
         ran.assert_refused(2, &[said]);

@@ -224,19 +224,56 @@ impl Framing<'_> {
     }
 }
 
-/// The target in six digits each; what rounding left of a 0 is one.
+/// The target in six digits each, and in more where the eye is nearer to it than the origin is; what rounding left of a 0
+/// is one.
 pub fn target_word(camera: &Camera) -> Numbers<3> {
-    let smallest = 1e-12 * camera.eye.distance(camera.target);
-    let digits = |number: f64| match number.abs() < smallest {
+    let distance = camera.eye.distance(camera.target);
+    let digits = |number: f64| match number.abs() < 1e-12 * distance {
         true => 0.0,
-        false => short(number),
+        false => rounded(
+            number,
+            DIGITS + (number.abs() / distance).log10().clamp(0.0, 9.0) as usize,
+        ),
     };
     Numbers(camera.target.to_array().map(digits))
 }
 
-/// Six digits: more than pixels show, and few enough to be read.
+/// More than pixels show, and few enough to be read.
+const DIGITS: usize = 6;
+
+/// That many digits.
 pub fn short(number: f64) -> f64 {
-    format!("{number:.5e}")
+    rounded(number, DIGITS)
+}
+
+fn rounded(number: f64, digits: usize) -> f64 {
+    format!("{number:.0$e}", digits - 1)
         .parse()
         .expect("a number that was just written")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::Projection;
+    use glam::{DVec3, dvec3};
+
+    /// A pixel is a thousandth of the distance or more.
+    #[test]
+    fn the_target_is_written_to_a_small_part_of_the_distance_however_far_the_origin() {
+        for from_origin in [0.0, 1.0, 37.0, 5e6, 1e9] {
+            let target = dvec3(from_origin + 1.0 / 3.0, -1.234_567_89, from_origin);
+            let camera = Camera {
+                eye: target + dvec3(0.0, -3.0, 0.0),
+                target,
+                up: DVec3::Z,
+                projection: Projection::Perspective { fov_degrees: 30.0 },
+                zoom: 1.0,
+            };
+            let Numbers(written) = target_word(&camera);
+            let off = (DVec3::from(written) - target).abs().max_element();
+            assert!(off < 1e-4, "{written:?} is {off} off at {from_origin}");
+        }
+        assert_eq!(short(1.234_567_89), 1.23457);
+    }
 }

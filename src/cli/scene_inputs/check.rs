@@ -136,6 +136,12 @@ fn check_lines(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
             "leave out --technique",
         );
     }
+    if let (true, Err(problem)) = (settings.splat.of_points, check_geometry(settings)) {
+        return refused(
+            &format!("ends rays and slices, and these do not end: {problem}"),
+            "--points-as spheres, grid or field",
+        );
+    }
     if let Err(problem) = check_geometry(settings) {
         return refused(
             &format!("ends rays and slices, and these do not end: {problem}"),

@@ -32,7 +32,7 @@ use crate::{
     offscreen::Stream,
     points::{FieldKernel, Points},
     scene::{Beside, Channel},
-    technique::{Filter, FilterBy, Mode, PerMode, Role, Settings},
+    technique::{Filter, FilterBy, Mode, PerMode, Role, Settings, splat::Splat},
     transfer::{Classified, Context, TransferFunction},
     volume::{Header, Limits, Source, Volume},
 };
@@ -68,6 +68,8 @@ pub struct SceneInputs {
     lines: Option<DrawnLines>,
     /// The field of points that rays are cast through, once the points are known.
     field: Option<FieldKernel>,
+    /// How many bits later splats of points end than one of them would, because so many lie at one place.
+    crowd_bits: u32,
 }
 
 #[derive(Debug)]
@@ -112,6 +114,7 @@ impl SceneInputs {
             overview: None,
             lines: None,
             field: None,
+            crowd_bits: 0,
         }
     }
 
@@ -350,6 +353,8 @@ impl SceneInputs {
         }
         settings.per_mode = self.per_mode.clone();
         settings.field = self.field;
+        let later = settings.splat.cut_bits + self.crowd_bits;
+        settings.splat.cut_bits = later.min(Splat::of_points().cut_bits);
         settings.filter_by = self.filter_by(scene, settings.filter_by);
         Ok(camera)
     }

@@ -30,7 +30,7 @@ pub fn read(scene: &SceneFlags, mode: Mode, progress: &Progress) -> Result<Scene
     if !technique.splats() {
         return Err(Error::usage(
             format!("--technique {technique} is for volumes, and scattered points are splatted"),
-            "leave it out",
+            "leave it out; --points-as field casts rays through them, --points-as grid through a volume of them",
         ));
     }
     check_words(scene, mode)?;
@@ -38,6 +38,7 @@ pub fn read(scene: &SceneFlags, mode: Mode, progress: &Progress) -> Result<Scene
     let classification = classification(&scene.classification, &volume, mode, OPACITY)?;
     let per_mode = per_mode(scene, mode, &classification, &volume, progress)?;
     Ok(SceneInputs {
+        crowd_bits: points.most_at_one_place().ilog2(),
         others: Others::Points(points),
         ..SceneInputs::new(volume, header, factor, classification, per_mode)
     })

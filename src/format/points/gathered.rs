@@ -154,7 +154,8 @@ impl Gathered {
     pub(super) fn finish(mut self) -> Result<Finished, Problem> {
         if self.places.is_empty() {
             let found = format!("{} rows without", self.dropped);
-            let wanted = "at least one row of finite numbers";
+            let wanted = "at least one row of finite numbers, with a standard deviation over 0 and a weight of 0 or more where \
+                          it has these";
             return Err(invalid(self.format, "points", wanted, &found));
         }
         let world = self.axes.place(&mut self.places);
@@ -167,7 +168,10 @@ impl Gathered {
             invalid(self.format, "points", wanted, &cause.to_string())
         })?;
         check_extent(self.format, &points)?;
-        let mut notes = vec![format!("{count} points were read")];
+        let mut notes = vec![match count {
+            1 => "1 point was read".to_owned(),
+            _ => format!("{count} points were read"),
+        }];
         if self.dropped > 0 {
             let rows = rows(self.dropped);
             notes.push(format!(

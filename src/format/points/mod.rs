@@ -70,7 +70,8 @@ fn ends_with(path: &Path, ending: &str) -> bool {
         .is_some_and(|found| found.eq_ignore_ascii_case(ending))
 }
 
-/// Opens scattered points: PLY, VTP and NumPy arrays by content, else a table, of tabs where the name ends with `.tsv`.
+/// Opens scattered points: PLY, VTP and NumPy arrays by content, else a table, of tabs where the name ends with `.tsv`,
+/// of semicolons where the row of names has these and no comma.
 ///
 /// # Errors
 /// The file cannot be read, names no columns that make a place and a value, has rows of several lengths, or promises more
@@ -99,8 +100,20 @@ pub fn open_points(
     } else if vtp::recognizes(&first) || ends_with(path, "vtp") {
         vtp::open(path, columns, limits)
     } else {
-        let delimiter = if ends_with(path, "tsv") { b'\t' } else { b',' };
-        table::open(path, delimiter, columns, limits)
+        table::open(path, delimiter(path, &first), columns, limits)
+    }
+}
+
+/// What parts the columns of a table: tabs where its name says so, semicolons where its row of names has no comma.
+fn delimiter(path: &Path, first: &[u8]) -> u8 {
+    if ends_with(path, "tsv") {
+        return b'\t';
+    }
+    let mut lines = first.split(|&byte| byte == b'\n');
+    let names = lines.find(|line| !line.is_empty() && !line.starts_with(b"#"));
+    match names {
+        Some(line) if line.contains(&b';') && !line.contains(&b',') => b';',
+        _ => b',',
     }
 }
 

@@ -65,7 +65,7 @@ pub(super) fn quantity(name: &str) -> Quantity {
     match stem.to_ascii_lowercase().as_str() {
         "lon" | "longitude" => Quantity::Longitude,
         "lat" | "latitude" => Quantity::Latitude,
-        "height" | "altitude" => Quantity::Height,
+        "height" | "altitude" | "alt" => Quantity::Height,
         "depth" => Quantity::Depth,
         "pressure" => Quantity::Pressure,
         _ => Quantity::Length,

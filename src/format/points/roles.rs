@@ -180,7 +180,7 @@ impl Table<'_> {
 
     fn vertical(&self) -> Result<Column, Problem> {
         let plain = self.one_of(&["z"])?;
-        let others = ["height", "altitude", "depth", "pressure"];
+        let others = ["height", "altitude", "alt", "depth", "pressure"];
         let mut named = self.names.iter().enumerate().filter(|(_, name)| {
             let (stem, _) = without_unit(name);
             others.iter().any(|other| other.eq_ignore_ascii_case(stem))

@@ -106,7 +106,7 @@ impl View<'_> {
     /// knows.
     ///
     /// # Errors
-    /// [`Error::LoopsEnd`].
+    /// [`Error::SplatLoopsEnd`].
     pub(in crate::technique) fn check_splat_turns(&self, max_loop_turns: u32) -> Result<(), Error> {
         if self.settings.splat.of_points {
             return Ok(());
@@ -116,7 +116,7 @@ impl View<'_> {
         let of_each = 1.0 + if clips > 0.0 { clips + 1.0 } else { 0.0 };
         let stack = stack_axis(self);
         let is_stack = uses_stack(self.settings);
-        let (mut most, mut slices) = (0.0, 0.0);
+        let (mut most, mut splats) = (0.0, 0.0);
         for (origin, direction, _) in self.some_rays() {
             let (o, d) = (origin.to_array(), direction.to_array());
             let axis = if is_stack { stack } else { main_axis(d) };
@@ -129,18 +129,16 @@ impl View<'_> {
             let n = f64::from(self.grid.dims[axis]);
             let turns = n * (2.0 + voxels * of_each);
             if turns > most {
-                (most, slices) = (turns, n);
+                (most, splats) = (turns, n * voxels);
             }
         }
         // Sheets are closed one by one.
         let room = f64::from(max_loop_turns) - 2.0 * self.longest_sample_count() - SPARE_TURNS;
         match most <= room {
             true => Ok(()),
-            false => Err(Error::LoopsEnd {
-                wanted: slices,
-                limit: (room.max(0.0) * slices / most).floor(),
-                samples_per_voxel: None,
-                follows_light: false,
+            false => Err(Error::SplatLoopsEnd {
+                wanted: splats,
+                limit: (room.max(0.0) * splats / most).floor(),
             }),
         }
     }
@@ -229,7 +227,7 @@ impl View<'_> {
         let axis = stack_axis(self);
         let refused = |found: String| {
             Err(Error::NotFor {
-                wanted: "axis-aligned sheets and splats without sheets",
+                wanted: "splatting in axis-aligned sheets, or in none,",
                 of: "an eye outside of their slices and rays up to 75 degrees off their normal: image-aligned sheets are for all",
                 found,
             })
