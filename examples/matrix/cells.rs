@@ -280,7 +280,7 @@ pub const FEATURES: &[Feature] = &[
     }),
     feature(
         "lines, spheres and surfaces in it",
-        "`--flow`, `--map`, `--barbs`, `--ground`",
+        "`--flow`, `--map`, `--barbs`, `--ground`, `--with surface.stl`",
         Seen::Tube,
         |_| {},
     ),

@@ -204,7 +204,7 @@ impl Measure {
             };
         }
         let names = match facts.is_earth {
-            true => ["east", "north", "height"],
+            true => ["east on the map", "north on the map", "height"],
             false => ["x", "y", "z"],
         };
         lengths(names[k], if k == 2 { height_factor } else { 1.0 })
@@ -251,7 +251,7 @@ mod tests {
         facts.heights = Heights::Lengths;
         // The map of a weather model.
         facts.degree_lengths = [None; 2];
-        assert_eq!(of(&facts, Some(0)), ("east", "km", 1.0));
+        assert_eq!(of(&facts, Some(0)), ("east on the map", "km", 1.0));
         facts.is_earth = false;
         assert_eq!(of(&facts, Some(1)), ("y", "km", 1.0));
     }

@@ -166,7 +166,7 @@ fn write(sheet: &mut Sheet, points: &[Point], words: &str) {
 }
 
 /// Whether a mark lies in a rectangle.
-fn meets(mark: &Mark, low: Point, high: Point) -> bool {
+pub(super) fn meets(mark: &Mark, low: Point, high: Point) -> bool {
     let is_over = |from: Point, to: Point| {
         (0..2).all(|k| from[k].min(to[k]) <= high[k] && from[k].max(to[k]) >= low[k])
     };

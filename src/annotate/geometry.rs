@@ -1,7 +1,10 @@
 //! What geometry beside a volume means: bars for its colours, sentences for its symbols.
 
-use super::{Error, Seen, bar::Bar, degrees::DegreeLine, sheet::Sheet};
-use crate::{figure::Anchor, transfer::TransferFunction};
+use super::{Error, Seen, bar::Bar, degrees::DegreeLine, degrees::meets, sheet::Sheet};
+use crate::{
+    figure::{Anchor, Mark},
+    transfer::TransferFunction,
+};
 
 /// What colours of geometry mean.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +22,8 @@ pub struct ColorLegend {
 pub struct GeometryLegend<'a> {
     /// What colours lines or spheres.
     pub lines: Option<&'a ColorLegend>,
+    /// What colours points beside a volume.
+    pub points: Option<&'a ColorLegend>,
     /// What colours the ground.
     pub ground: Option<&'a ColorLegend>,
     /// What symbols mean, a sentence each.
@@ -29,6 +34,8 @@ pub struct GeometryLegend<'a> {
 
 /// From line to line of words in the lower right, in em.
 pub(super) const APART: f64 = 1.4;
+/// Lines up to which the sentences go where other words are in their place.
+const HIGHEST: usize = 5;
 /// How much of the picture's width a sentence takes.
 const WIDEST: f64 = 0.55;
 
@@ -42,13 +49,21 @@ fn own(seen: &Seen) -> usize {
 }
 
 fn count(seen: &Seen) -> usize {
-    let others = [seen.geometry.lines, seen.geometry.ground];
+    let others = [
+        seen.geometry.lines,
+        seen.geometry.points,
+        seen.geometry.ground,
+    ];
     own(seen) + others.into_iter().flatten().count()
 }
 
-/// A bar each of lines and of the ground, below that of the volume; where they begin.
+/// A bar each of lines, of points and of the ground, below that of the volume; where they begin.
 pub(super) fn bars(sheet: &mut Sheet, seen: &Seen) -> Result<Option<f64>, Error> {
-    let legends = [seen.geometry.lines, seen.geometry.ground];
+    let legends = [
+        seen.geometry.lines,
+        seen.geometry.points,
+        seen.geometry.ground,
+    ];
     let mut left: Option<f64> = None;
     for (nth, legend) in legends.into_iter().flatten().enumerate() {
         let bar = Bar {
@@ -72,8 +87,21 @@ pub(super) fn words(sheet: &mut Sheet, seen: &Seen, below: f64) {
     let words = seen.geometry.words.iter().map(|words| unparted(words));
     let lines = words.flat_map(|words| sheet.wrapped(&words, 1.0, WIDEST * width, 4));
     let lines: Vec<String> = lines.collect();
+    let baseline = |line: usize, up: usize| height - (below + APART * (line + up) as f64) * em;
+    // Above other words, where there are some.
+    let is_free = |&up: &usize| {
+        lines.iter().rev().enumerate().all(|(at, line)| {
+            let y = baseline(at, up);
+            let low = [width - em - sheet.width(line, 1.0), y - em];
+            let high = [width - em, y + 0.25 * em];
+            let texts = sheet.figure.marks.iter();
+            let mut texts = texts.filter(|mark| matches!(mark, Mark::Text { .. }));
+            !texts.any(|mark| meets(mark, low, high))
+        })
+    };
+    let up = (0..HIGHEST).find(is_free).unwrap_or(0);
     for (at, line) in lines.iter().rev().enumerate() {
-        let y = height - (below + APART * at as f64) * em;
+        let y = baseline(at, up);
         sheet.text_on_ground([width - em, y], line, 1.0, Anchor::End);
     }
 }

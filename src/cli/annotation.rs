@@ -35,7 +35,7 @@ pub fn annotation(
     if let Some(word) = scene.modes.paint(mode) {
         facts.paint = Some(paint(scene, word)?);
     }
-    if !scene.with.with.is_empty() {
+    if scene.with.volumes().next().is_some() {
         let own = scene
             .channels
             .channel
@@ -48,7 +48,7 @@ pub fn annotation(
         }
         facts
             .channels
-            .extend(scene.with.with.iter().map(WithWord::name));
+            .extend(scene.with.volumes().map(WithWord::name));
     }
     Ok(Some(Annotation {
         marks: marks.clone(),

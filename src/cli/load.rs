@@ -45,7 +45,7 @@ pub fn load_from(
 ) -> Result<(Volume, f64), Error> {
     // What may be wrong with the words is said before anything about memory.
     scene.input.pick(source.header())?;
-    let beside = scene.with.with.len() as u32 + u32::from(scene.opacity.are_given());
+    let beside = scene.with.volumes().count() as u32 + u32::from(scene.opacity.are_given());
     let held = Held::of(scene, 1 + beside);
     // A little volume is read while the device is still being made, and then compared with what that has.
     let is_ahead = scene.denoise.is_none() && is_little(source.header(), scene, held);

@@ -46,6 +46,7 @@ mod resume_check;
 mod sample_limit;
 mod scene_file;
 mod scene_inputs;
+mod shape;
 mod sheet;
 mod show;
 mod signals;

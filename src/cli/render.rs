@@ -227,6 +227,12 @@ impl Render {
         for note in idle.chain(view.notes.iter().cloned()) {
             progress.note(&note);
         }
+        let is_chosen = self.scene_file.is_none() && self.scene.sampling.aa.is_none();
+        if is_chosen && scene.has_lines() && scene.sampling.aa == Some(4) {
+            progress.note(
+                "four rays a pixel, for the edges of what lies beside the volume; --aa 1 sends one",
+            );
+        }
         let View {
             camera, settings, ..
         } = view;

@@ -7,7 +7,8 @@
 //! | `both` | the first with `--flow stream` |
 
 use super::{Error, flags::SceneFlags, flow::FlowWord, load::open, map::MapWords};
-use crate::annotate::Marks;
+use crate::annotate::{Marks, caption};
+use crate::figure::letter_lacking;
 use crate::technique::Mode;
 use crate::volume::Header;
 use clap::{Args, ValueEnum};
@@ -109,8 +110,9 @@ fn expand(word: ShowWord, scene: &mut SceneFlags) -> Result<String, Error> {
         scene.map.map = Some(MapWords::ALL.parse().expect("words"));
     }
     if scene.annotate.annotate.is_none() {
-        let usual = Marks::USUAL.parse().expect("marks");
-        scene.annotate.annotate = Some(usual);
+        let usual: Marks = Marks::USUAL.parse().expect("marks");
+        let title = has_surface.then(|| title(scene)).transpose()?;
+        scene.annotate.annotate = Some(Marks { title, ..usual });
     }
     let mut words = Vec::new();
     words.extend(
@@ -140,8 +142,29 @@ fn expand(word: ShowWord, scene: &mut SceneFlags) -> Result<String, Error> {
             .map(|flow| format!("--flow {}", flow.name())),
     );
     words.extend(scene.map.map.iter().map(|map| format!("--map {map}")));
-    words.push("--annotate".to_owned());
+    let marks = scene.annotate.annotate.iter();
+    words.extend(marks.map(|marks| match marks.to_string() {
+        usual if usual == Marks::USUAL => "--annotate".to_owned(),
+        other => format!("--annotate '{other}'"),
+    }));
     Ok(words.join(" "))
+}
+
+/// What the surface is of, and what its colours are of; letters that are not drawn are left out.
+fn title(scene: &SceneFlags) -> Result<String, Error> {
+    let of = |variable: &Option<String>| {
+        let mut input = scene.input.clone();
+        input.variable.clone_from(variable);
+        let source = open(&input, &input.limits())?;
+        Ok::<_, Error>(caption(source.header()))
+    };
+    let surface = of(&scene.input.variable)?;
+    let colors = of(&scene.modes.levels.iso_color_by)?;
+    let title = format!("{surface} coloured by {colors}");
+    Ok(title
+        .chars()
+        .filter(|&c| letter_lacking(&c.to_string()).is_none())
+        .collect())
 }
 
 /// The first variable of these standard names or names; one that is derived before a name alone.

@@ -45,6 +45,8 @@ pub(crate) mod geometry;
 mod grib;
 #[cfg(feature = "netcdf")]
 mod hdf5;
+#[cfg(feature = "json")]
+pub mod mesh;
 mod metaimage;
 #[cfg(feature = "netcdf")]
 mod netcdf;
@@ -53,6 +55,7 @@ mod npy;
 mod nrrd;
 mod pieces;
 mod place;
+mod ply;
 pub mod points;
 mod problem;
 pub mod raw;
@@ -194,7 +197,7 @@ const READERS: &[Reader] = &[
         open: hdf5::open,
     },
     Reader {
-        recognizes: |first| points::recognizes_ply(first) || points::recognizes_vtp(first),
+        recognizes: |first| ply::recognizes(first) || points::recognizes_vtp(first),
         // A table of text has no mark of its own.
         endings: &["csv", "tsv", "ply", "vtp"],
         open: points::open,

@@ -22,6 +22,25 @@ pub(crate) fn open_regular(path: &Path) -> Result<(File, Metadata), Problem> {
     Ok((file, metadata))
 }
 
+/// All bytes of a file that has at most so many; `what` it is.
+#[cfg(feature = "json")]
+pub(crate) fn whole(path: &Path, most: u64, what: &str) -> Result<Vec<u8>, Problem> {
+    let (file, metadata) = open_regular(path)?;
+    let mut bytes = Vec::new();
+    // It may grow while it is read.
+    let found = file.take(most.saturating_add(1)).read_to_end(&mut bytes);
+    found.map_err(problem::io("reading the file"))?;
+    let count = super::convert::to_u64(bytes.len()).max(metadata.len());
+    match count > most {
+        true => Err(Problem::Limit {
+            what: what.to_owned(),
+            wanted_bytes: count,
+            limit_bytes: most,
+        }),
+        false => Ok(bytes),
+    }
+}
+
 fn kind(file_type: FileType) -> &'static str {
     #[cfg(unix)]
     {

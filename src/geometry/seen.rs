@@ -35,6 +35,12 @@ pub struct Seen {
     pub lines: Vec<u32>,
 }
 
+impl Seen {
+    /// In memory.
+    pub const BYTES_PER_PIXEL: u64 =
+        (size_of::<[f32; 4]>() + size_of::<f64>() + size_of::<u32>()) as u64;
+}
+
 /// One of all.
 #[derive(Clone, Copy)]
 enum Shape {
@@ -243,9 +249,14 @@ fn mixed([a, b]: [[f32; 3]; 2], part: f64) -> [f32; 3] {
     std::array::from_fn(|c| a[c] + part as f32 * (b[c] - a[c]))
 }
 
+/// How bright a dull surface is under a light at the eye, by the cosine between its normal and the way to the eye.
+pub(crate) fn dull(facing: f64) -> f64 {
+    AMBIENT + DIFFUSE * facing.abs().min(1.0)
+}
+
 fn lit(color: [f32; 3], facing: f64) -> [f32; 4] {
     let facing = facing.abs().min(1.0);
-    let [own, shine] = [AMBIENT + DIFFUSE * facing, SPECULAR * facing.powi(EXPONENT)];
+    let [own, shine] = [dull(facing), SPECULAR * facing.powi(EXPONENT)];
     let [r, g, b] = color.map(|c| (f64::from(c) * own + shine).min(1.0) as f32);
     [r, g, b, 1.0]
 }

@@ -301,12 +301,14 @@ fn every_command_of_the_page_of_annotation_runs() {
 #[test]
 fn every_command_of_the_page_of_weather_runs() {
     let (folder, _, lines) = run_page("docs/weather.md");
-    assert_eq!(lines, 16);
+    assert_eq!(lines, 18);
     let pictures = [
         "particles.png",
         "vapor.png",
         "abc.png",
         "comets.png",
+        "ribbons.png",
+        "cloud.png",
         "wind.png",
         "barbs.png",
         "ground.png",

@@ -376,3 +376,42 @@ fn lines_of_a_forecast_on_a_map_have_degrees_and_seeds_take_them() {
     let said = "none of 1 seeds lies in the wind";
     assert!(far.code == 2 && far.err.contains(said), "{far:#?}");
 }
+
+#[test]
+fn a_wind_that_is_too_large_is_refused_with_its_size_or_reduced() {
+    let folder = Folder::new();
+    let info = |input: &str| -> serde_json::Value {
+        let ran = folder.run(&format!("info {input} --json"));
+        ran.assert_done();
+        serde_json::from_str(&ran.out).expect("JSON")
+    };
+    let of_storm = info(STORM);
+    let bytes = &of_storm["render_bytes"];
+    // 16 x 16 x 6 voxels of three floats, at eight times.
+    assert_eq!(bytes["wind"], 16 * 16 * 6 * 12, "{bytes}");
+    assert_eq!(bytes["wind_of_all_times"], 8 * 16 * 16 * 6 * 12, "{bytes}");
+    assert!(
+        bytes["line_vertex"].as_u64() > Some(40) && bytes["geometry_pixel"] == 28,
+        "{bytes}"
+    );
+    assert!(info("phantom:head,n=8")["render_bytes"]["wind"].is_null());
+    let lines = format!(
+        "convert {STORM} -o a.csv --flow stream --flow-seeds random:40 --max-memory 30K --force"
+    );
+    let refused = folder.run(&lines);
+    assert_ne!(refused.code, 0);
+    let said = "the wind of one time takes 36864 bytes, and there are 30720";
+    assert!(refused.err.contains(said), "{}", refused.err);
+    let reduced = folder.run(&format!("{lines} --fit"));
+    reduced.assert_done();
+    let said = "reduced from 16 x 16 x 6 to 8 x 8 x 3 voxels, means of blocks of 2 a side";
+    assert!(reduced.err.contains(said), "{}", reduced.err);
+    // Of 36 864 bytes and of an eighth: lines of the same seeds in nearly the same wind.
+    let of_blocks = ends(&rows(&folder, "a.csv"));
+    folder.run(&lines.replace("30K", "1G")).assert_done();
+    let of_voxels = ends(&rows(&folder, "a.csv"));
+    assert_eq!(of_blocks.len(), of_voxels.len());
+    let speed = |ends: &[[f64; 9]]| ends.iter().map(|end| end[8]).sum::<f64>() / ends.len() as f64;
+    let [blocks, voxels] = [speed(&of_blocks), speed(&of_voxels)];
+    assert!((blocks / voxels - 1.0).abs() < 0.2, "{blocks} {voxels}");
+}

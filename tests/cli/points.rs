@@ -139,7 +139,7 @@ fn what_points_do_not_have_is_refused_by_name() {
         ("p.csv --section axial", "--section"),
         ("p.csv --labels p.csv", "--labels"),
         ("p.csv --component 0", "--component"),
-        ("p.csv --with p.csv", "--with is for volumes"),
+        ("p.csv --with v.nrrd", "--with is for volumes"),
         (
             "p.csv --opacity-from p.csv",
             "--opacity-from is for volumes",

@@ -185,6 +185,7 @@ impl SceneFlags {
             ("--coast", self.map.coast.is_some()),
             ("--barbs", self.barbs.barbs.is_some()),
             ("--ground", self.ground.ground.is_some()),
+            ("--with", self.with.shapes().next().is_some()),
         ];
         let mut given = words.into_iter().filter(|(_, is_given)| *is_given);
         given.next().map(|(word, _)| word)
@@ -298,7 +299,7 @@ impl SceneFlags {
             && self.input.component != Some(Component::All)
             && self.labels.labels.is_none()
             && !self.opacity.are_given()
-            && self.with.with.is_empty();
+            && self.with.volumes().next().is_none();
         is_one && self.classification.wants_slabs() && !self.sampling.says_how()
     }
 

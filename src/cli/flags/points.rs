@@ -142,9 +142,11 @@ impl SceneFlags {
     /// Whether the words say how points look where there are some.
     pub fn check_point_look(&self) -> Result<(), Error> {
         let look = &self.point_look;
-        if look.sphere_size.is_some() && look.points_as != Some(PointsWord::Spheres) {
+        let has_spheres =
+            look.points_as == Some(PointsWord::Spheres) || self.with.shapes().next().is_some();
+        if look.sphere_size.is_some() && !has_spheres {
             return Err(Error::usage(
-                "--sphere-size needs --points-as spheres",
+                "--sphere-size needs --points-as spheres, or points by --with",
                 "leave it out",
             ));
         }

@@ -299,7 +299,7 @@ impl SamplingFlags {
     }
 
     /// Those of `--clip`, then those of `--clip-box`.
-    fn clip_planes(&self) -> Result<Vec<ClipPlane>, Error> {
+    pub fn clip_planes(&self) -> Result<Vec<ClipPlane>, Error> {
         let of_box = self.clip_box.as_ref().map(ClipBox::planes);
         let of_box = of_box.transpose()?.into_iter().flatten();
         let planes: Vec<_> = clip_planes(&self.clip)?.into_iter().chain(of_box).collect();

@@ -1,10 +1,10 @@
-//! Other volumes that are seen together with INPUT, each by a function of its own: the words.
+//! What is seen together with INPUT: other volumes, each by a function of its own, surfaces and scattered points: the words.
 
 use super::{
     Error, Inlined, InputFlags, color::rgb, component::Component, input::PHANTOM, values::colormap,
     values::preset,
 };
-use crate::cli::registration;
+use crate::cli::{registration, shape::ShapeOnce};
 use crate::format::geometry::is_invertible;
 use clap::Args;
 use glam::{DAffine3, DMat4, DVec3};
@@ -19,7 +19,8 @@ pub struct WithFlags {
     /// Another volume of the same place, on a grid of its own if need be, drawn together with INPUT and by a function of its
     /// own: preset, tf, colormap, color and window say which, variable and component what is read, transform=FILE (a linear
     /// registration of ITK, ANTs or 3D Slicer, with INPUT as the fixed volume) and then shift=X:Y:Z, in world length, move it;
-    /// once for each volume
+    /// once for each volume. Or a surface (.ply with faces, .stl, .glb), which takes color, transform and shift, or points
+    /// (.csv, .tsv, .vtp, .ply without faces) as spheres, which take variable, window, colormap or color, transform and shift
     #[arg(
         long,
         value_name = "FILE[,preset=NAME][,window=LO:HI]...",
@@ -68,7 +69,13 @@ pub struct WithWord {
     /// How far it is moved after that, in world length.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shift: Option<[f64; 3]>,
+    /// The surface or the points of the file, once they are read.
+    #[serde(skip)]
+    pub shape: ShapeOnce,
 }
+
+/// Endings of files of surfaces and points.
+const SHAPES: [&str; 6] = ["ply", "stl", "glb", "csv", "tsv", "vtp"];
 
 /// The keys of a word.
 const KEYS: &str = "preset, tf, colormap, color, window, variable, component, transform or shift";
@@ -88,6 +95,16 @@ impl WithFlags {
             }
         }
         Ok(())
+    }
+
+    /// The other volumes.
+    pub fn volumes(&self) -> impl Iterator<Item = &WithWord> {
+        self.with.iter().filter(|word| !word.is_shape())
+    }
+
+    /// The surfaces and points.
+    pub fn shapes(&self) -> impl Iterator<Item = &WithWord> {
+        self.with.iter().filter(|word| word.is_shape())
     }
 
     /// The files, those of functions and registrations too.
@@ -115,7 +132,18 @@ impl WithFlags {
 }
 
 impl WithWord {
-    fn file(&self) -> Option<&Path> {
+    /// True for a file of a surface or of points, by the ending of its name.
+    pub fn is_shape(&self) -> bool {
+        let ending = self.file().and_then(Path::extension);
+        ending.is_some_and(|ending| {
+            SHAPES
+                .iter()
+                .any(|shape| ending.eq_ignore_ascii_case(shape))
+        })
+    }
+
+    /// The file, where it is no built-in volume.
+    pub fn file(&self) -> Option<&Path> {
         let path = Path::new(&self.path);
         (!self.path.starts_with(PHANTOM)).then_some(path)
     }
@@ -130,7 +158,7 @@ impl WithWord {
         }
     }
 
-    /// Where the words move it to.
+    /// Where the words move what the file has.
     pub fn moved(&self, world_from_voxel: DAffine3) -> Result<DAffine3, Error> {
         let registered = match self.transform {
             Some([x, y, z]) => {
@@ -196,6 +224,17 @@ impl WithWord {
             ("tf", self.tf.is_some() || self.function.is_some()),
             ("color", self.color.is_some()),
         ];
+        let of_volumes = [
+            ("preset", self.preset.is_some()),
+            ("tf", self.tf.is_some() || self.function.is_some()),
+            ("component", self.component.is_some()),
+        ];
+        let of_volumes = of_volumes.into_iter().find(|(_, is_given)| *is_given);
+        if let (true, Some((key, _))) = (self.is_shape(), of_volumes) {
+            return Err(format!(
+                "{key} is of volumes: a surface takes color, transform and shift, points take variable, window and colormap too"
+            ));
+        }
         let mut given = ways.into_iter().filter(|(_, is_given)| *is_given);
         match (given.next(), given.next()) {
             (Some((one, _)), Some((other, _))) => Err(format!(
@@ -295,6 +334,7 @@ mod tests {
             ("a.nrrd,color=red,colormap=vik", "color and colormap"),
             ("a.nrrd,component=x", "component=x"),
             ("a.nrrd,shift=1:2", "X:Y:Z"),
+            ("a.STL,preset=pet", "preset is of volumes"),
             ("a.nrrd,shift=1:2:x:3", "X:Y:Z"),
         ] {
             let problem = text.parse::<WithWord>().expect_err(text);

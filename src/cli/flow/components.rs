@@ -8,7 +8,7 @@ use super::super::{Error, progress::Progress};
 use super::flags::WindWords;
 use super::variable::Variables;
 use crate::flow::wind::WindNames;
-use crate::volume::{ComponentKind, Grid, Header, MapKind, Source, is_same_grid};
+use crate::volume::{ComponentKind, Grid, Header, MapKind, Reduced, Source, is_same_grid};
 
 /// What the three components are read from, with the number of the component.
 pub(super) struct Components {
@@ -17,6 +17,30 @@ pub(super) struct Components {
     pub up: Option<(Box<dyn Source>, u32)>,
     pub names: [String; 3],
 }
+
+impl Components {
+    /// The same with means of blocks of so many voxels a side.
+    pub(super) fn reduced(self, factor: u32) -> Self {
+        if factor == 1 {
+            return self;
+        }
+        let reduced = |(source, component): (Box<dyn Source>, u32)| -> (Box<dyn Source>, u32) {
+            (
+                Box::new(Reduced::new(source, factor, SLAB_BYTES)),
+                component,
+            )
+        };
+        Self {
+            east: reduced(self.east),
+            north: reduced(self.north),
+            up: self.up.map(reduced),
+            names: self.names,
+        }
+    }
+}
+
+/// Of a source that is reduced, in memory at once.
+const SLAB_BYTES: u64 = 16 << 20;
 
 /// Where the voxels of a header lie.
 pub(super) fn grid_of(header: &Header) -> Grid {

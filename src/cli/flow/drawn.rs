@@ -1,4 +1,4 @@
-//! Geometry in a picture: lines along a wind and of the Earth, points as spheres.
+//! Geometry in a picture: lines along a wind and of the Earth, points as spheres, surfaces.
 //!
 //! ```text
 //! words -> lines in the drawn world -> round cones and triangles for a camera (`placed`)
@@ -16,8 +16,10 @@ use super::barbs::{self, Barbs};
 use super::colors::LineColors;
 use super::film::{FilmSeed, FilmTime, seeds_of};
 use super::flags::{FlowColor, FlowWord};
-use super::moving::{Passed, Tail, Way, Ways};
+use super::moving::{Drawn, Passed, Tail, Way, Ways, in_words};
+use super::ribbon::turns;
 use super::style::StyleWord;
+use super::surface::Surface;
 use crate::annotate::{ColorLegend, DegreeLine, GeometryLegend};
 use crate::color::decode_srgb;
 use crate::figure::short;
@@ -26,16 +28,21 @@ use crate::volume::Header;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Pixels; of the heads of comets.
+/// Pixels; of the heads of comets, of spheres along lines, and of ribbons.
 const WIDTH: f64 = 3.0;
 const COMET_WIDTH: f64 = 6.0;
+const SPHERE_WIDTH: f64 = 8.0;
+const RIBBON_WIDTH: f64 = 12.0;
 /// Tails of particles, of the times of the file.
 const TAIL: f64 = 0.125;
 
-/// Lines in the drawn world: of a wind, of the Earth.
+/// Lines in the drawn world: of a wind, of the Earth; and what else is drawn beside a volume.
 #[derive(Clone, Debug, Default)]
 pub struct DrawnLines {
     pub(super) sets: Vec<LineSet>,
+    pub(super) surfaces: Vec<Surface>,
+    /// What the colours of points beside the volume mean.
+    pub(super) points: Option<ColorLegend>,
     /// What the colours of the wind mean, where they have several.
     legend: Option<ColorLegend>,
     /// Values at the ends of these colours.
@@ -56,11 +63,13 @@ pub struct DrawnLines {
 #[derive(Clone, Debug)]
 pub(super) struct LineSet {
     pub(super) lines: Vec<Vec<(DVec3, [f32; 3])>>,
-    pub(super) width_pixels: f64,
+    pub(super) width: Width,
     /// Of each line, where they differ: how wide it is of that.
     pub(super) shares: Option<Vec<f64>>,
     /// The same of each place of each line.
     pub(super) tapers: Option<Vec<Vec<f64>>>,
+    /// Of ribbons: how far they are turned at each place of each line, radians.
+    pub(super) turns: Option<Vec<Vec<f64>>>,
     /// The number of each line, where they have one.
     pub(super) numbers: Option<Vec<u32>>,
     pub(super) has_heads: bool,
@@ -68,6 +77,51 @@ pub(super) struct LineSet {
     pub(super) on_section: Option<f64>,
     /// By its radius, over what it lies on.
     pub(super) is_lifted: bool,
+}
+
+/// How wide lines are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Width {
+    /// Where the camera is turned to.
+    Pixels(f64),
+    /// In the drawn world.
+    World(f64),
+}
+
+impl LineSet {
+    /// Lines that differ in nothing but their colours.
+    pub(super) fn plain(lines: Vec<Vec<(DVec3, [f32; 3])>>, width: Width) -> Self {
+        Self {
+            lines,
+            width,
+            shares: None,
+            tapers: None,
+            turns: None,
+            numbers: None,
+            has_heads: false,
+            on_section: None,
+            is_lifted: false,
+        }
+    }
+
+    /// Points with their values as spheres, larger where these are; pixels across the largest.
+    pub(super) fn of_points(
+        points: impl Iterator<Item = (DVec3, f64)>,
+        [low, high]: [f64; 2],
+        color: impl Fn(f64) -> [f32; 3],
+        pixels: Option<f64>,
+    ) -> Self {
+        let share = |value: f64| {
+            let part = ((value - low) / (high - low)).clamp(0.0, 1.0);
+            SMALLEST + (1.0 - SMALLEST) * if part.is_finite() { part } else { 0.5 }
+        };
+        let all = points.map(|(place, value)| (vec![(place, color(value))], share(value)));
+        let (lines, shares) = all.unzip();
+        Self {
+            shares: Some(shares),
+            ..Self::plain(lines, Width::Pixels(pixels.unwrap_or(SPHERE_PIXELS)))
+        }
+    }
 }
 
 /// Pixels across a sphere of the largest value, and what the smallest has of it.
@@ -82,33 +136,15 @@ impl DrawnLines {
         legend: ColorLegend,
         pixels: Option<f64>,
     ) -> Self {
-        let function = &legend.function;
-        let [low, high] = points.value_range();
-        let share = |value: f64| {
-            let part = ((value - low) / (high - low)).clamp(0.0, 1.0);
-            SMALLEST + (1.0 - SMALLEST) * if part.is_finite() { part } else { 0.5 }
-        };
         let values = points.values().iter().copied().map(f64::from);
-        let kept = || {
-            let all = points.places().iter().copied().zip(values.clone());
-            all.filter(|(place, _)| is_kept(*place))
-        };
-        let color = |value: f64| function.srgb(value).map(|c| decode_srgb(c as f32));
-        let set = LineSet {
-            lines: kept()
-                .map(|(place, value)| vec![(place, color(value))])
-                .collect(),
-            width_pixels: pixels.unwrap_or(SPHERE_PIXELS),
-            shares: Some(kept().map(|(_, value)| share(value)).collect()),
-            tapers: None,
-            numbers: None,
-            has_heads: false,
-            on_section: None,
-            is_lifted: false,
-        };
+        let all = points.places().iter().copied().zip(values);
+        let kept = all.filter(|(place, _)| is_kept(*place));
+        let color = |value: f64| legend.function.srgb(value).map(|c| decode_srgb(c as f32));
+        let range = points.value_range();
+        let set = LineSet::of_points(kept, range, color, pixels);
         Self {
             sets: vec![set],
-            range: [low, high],
+            range,
             legend: Some(legend),
             ..Self::default()
         }
@@ -117,6 +153,8 @@ impl DrawnLines {
     /// With more lines; what colours mean is that of these first.
     pub fn with(mut self, more: Self) -> Self {
         self.sets.extend(more.sets);
+        self.surfaces = more.surfaces;
+        self.points = more.points;
         self.seeds = more.seeds;
         self.ways = more.ways;
         self.barbs = more.barbs;
@@ -150,11 +188,14 @@ impl DrawnLines {
         if let Some(word) = scene.flow.flow {
             let of_seeds = of_film.filter(|film| !film.seeds.is_empty());
             match of_film.and_then(|film| film.ways.map(|ways| (ways, ways.now(&film)))) {
-                Some((ways, now)) => drawn.add_ways(ways, word, scene, Some(now))?,
-                None => drawn.add_wind(word, scene, stretch, of_seeds, said, progress)?,
+                Some((ways, now)) => {
+                    drawn.add_ways(ways, word, scene, header, Some(now), progress)?
+                }
+                None => drawn.add_wind(word, scene, header, stretch, of_seeds, progress)?,
             }
         }
         drawn.add_barbs(scene, stretch, of_film, said, progress)?;
+        drawn.add_shapes(scene, header, stretch, progress)?;
         Ok(Some(drawn))
     }
 
@@ -191,17 +232,11 @@ impl DrawnLines {
                 false => line.grey,
             };
             let color = [decode_srgb(grey); 3];
+            let lines = drawn.map(|part| part.map(|place| (place, color)).collect());
             self.sets.push(LineSet {
-                lines: drawn
-                    .map(|part| part.map(|place| (place, color)).collect())
-                    .collect(),
-                width_pixels: line.width,
-                shares: None,
-                tapers: None,
-                numbers: None,
-                has_heads: false,
                 on_section,
                 is_lifted: self.ground.is_some(),
+                ..LineSet::plain(lines.collect(), Width::Pixels(line.width))
             });
         }
     }
@@ -253,12 +288,13 @@ impl DrawnLines {
         &mut self,
         word: FlowWord,
         scene: &SceneFlags,
+        header: &Header,
         stretch: DVec3,
         of_film: Option<FilmTime>,
-        said: &[String],
         progress: &Progress,
     ) -> Result<(), Error> {
         let (flags, style) = (&scene.flow, &scene.flow_style);
+        let said = header.notes.as_slice();
         let input = &input_of_wind(scene);
         let traced = flags.traced(word, input, of_film, Some(said), progress)?;
         let one = match flags.color()? {
@@ -283,11 +319,17 @@ impl DrawnLines {
             let seconds = |vertex: Option<&crate::flow::Vertex>| vertex.map_or(0.0, |v| v.time);
             let ends = [line.vertices.first(), line.vertices.last()].map(seconds);
             for range in line.piece_ranges() {
-                let piece = line.vertices[range.clone()].iter().zip(&numbers[range]);
-                let passed = piece.map(|(vertex, &value)| Passed {
+                let vertices = &line.vertices[range.clone()];
+                let turns = match style.flow_style {
+                    Some(StyleWord::Ribbons) => turns(&traced.wind.field, vertices, traced.at),
+                    _ => Vec::new(),
+                };
+                let passed = vertices.iter().zip(&numbers[range]).enumerate();
+                let passed = passed.map(|(i, (vertex, &value))| Passed {
                     place: stretch * vertex.place,
                     color: colors.of(value),
                     seconds: vertex.time,
+                    turn: turns.get(i).copied().unwrap_or(0.0),
                 });
                 let passed = passed.collect();
                 let number = line.seed as u32 + 1;
@@ -316,7 +358,7 @@ impl DrawnLines {
             }),
             range: colors.range,
         };
-        self.add_ways(&ways, word, scene, None)?;
+        self.add_ways(&ways, word, scene, header, None, progress)?;
         self.ways = (word == FlowWord::Path).then(|| Arc::new(ways));
         Ok(())
     }
@@ -327,7 +369,9 @@ impl DrawnLines {
         ways: &Ways,
         word: FlowWord,
         scene: &SceneFlags,
+        header: &Header,
         now: Option<f64>,
+        progress: &Progress,
     ) -> Result<(), Error> {
         let style = &scene.flow_style;
         let look = style.flow_style.unwrap_or(match word {
@@ -341,36 +385,62 @@ impl DrawnLines {
             ));
         }
         let tail = match (look, word, style.comet_time) {
-            (StyleWord::Tube | StyleWord::Arrows, _, _) => Tail::All,
             (StyleWord::Comets, FlowWord::Streak, _) => {
                 return Err(Error::usage(
                     "--flow streak with --flow-style comets: smoke has no heads",
                     "--flow path has one for each particle",
                 ));
             }
+            (StyleWord::Points | StyleWord::Ribbons, FlowWord::Streak, _) => {
+                return Err(Error::usage(
+                    "--flow streak with --flow-style points and ribbons: no particle goes along smoke",
+                    "--flow path has the way of each particle, --flow-style tube is for smoke",
+                ));
+            }
+            (StyleWord::Tube | StyleWord::Arrows | StyleWord::Points | StyleWord::Ribbons, ..) => {
+                Tail::All
+            }
             (StyleWord::Comets, _, Some(seconds)) => Tail::Comet(seconds),
             (StyleWord::Comets, FlowWord::Path, None) => Tail::Comet(TAIL * ways.span()),
             (StyleWord::Comets, FlowWord::Stream, None) => Tail::WholeComet,
         };
-        let drawn = ways.ways.iter().filter_map(|way| {
-            let (line, taper) = way.drawn(now, tail)?;
-            Some((line, (taper, way.number)))
-        });
-        let (lines, others): (Vec<_>, Vec<_>) = drawn.unzip();
-        let (tapers, numbers) = others.into_iter().unzip();
-        let is_comet = look == StyleWord::Comets;
-        self.sets.push(LineSet {
-            lines,
-            width_pixels: style
-                .flow_width
-                .unwrap_or(if is_comet { COMET_WIDTH } else { WIDTH }),
-            shares: None,
-            tapers: is_comet.then_some(tapers),
-            numbers: Some(numbers),
-            has_heads: look == StyleWord::Arrows,
-            on_section: None,
-            is_lifted: false,
-        });
+        let width = |default: f64| match style.flow_width {
+            None => Ok(Width::Pixels(default)),
+            Some(word) => word.in_world(header),
+        };
+        if look == StyleWord::Points {
+            let step = ways.time_apart(header.is_earth);
+            let marks = ways.ways.iter().map(|way| way.marks(now, step));
+            let marks = marks.flatten().map(|mark| vec![mark]).collect();
+            self.sets.push(LineSet::plain(marks, width(SPHERE_WIDTH)?));
+            let words = format!("A sphere every {}", in_words(step));
+            progress.note(&words);
+            self.words.push(words);
+        } else {
+            let drawn = ways.ways.iter().filter_map(|way| {
+                let Drawn {
+                    line,
+                    shares,
+                    turns,
+                } = way.drawn(now, tail)?;
+                Some((line, (way.number, (shares, turns))))
+            });
+            let (lines, others): (Vec<_>, Vec<_>) = drawn.unzip();
+            let (numbers, others): (_, Vec<_>) = others.into_iter().unzip();
+            let (tapers, turns) = others.into_iter().unzip();
+            let default = match look {
+                StyleWord::Comets => COMET_WIDTH,
+                StyleWord::Ribbons => RIBBON_WIDTH,
+                _ => WIDTH,
+            };
+            self.sets.push(LineSet {
+                tapers: (look == StyleWord::Comets).then_some(tapers),
+                turns: (look == StyleWord::Ribbons).then_some(turns),
+                numbers: Some(numbers),
+                has_heads: look == StyleWord::Arrows,
+                ..LineSet::plain(lines, width(default)?)
+            });
+        }
         self.range = ways.range;
         self.legend.clone_from(&ways.legend);
         Ok(())
@@ -395,6 +465,7 @@ impl DrawnLines {
     pub fn legend(&self) -> GeometryLegend<'_> {
         GeometryLegend {
             lines: self.legend.as_ref(),
+            points: self.points.as_ref(),
             ground: self
                 .ground
                 .as_ref()

@@ -63,12 +63,17 @@ pub fn with_range_of_film(
         });
         flags.traced(FlowWord::Stream, &input, of_film, Some(&[]), &quiet)
     };
-    let seeds = seeds_of(&traced(first, None)?.lines);
+    let of_first = traced(first, None)?;
+    let seeds = seeds_of(&of_first.lines);
     let mut range = [f64::INFINITY, f64::NEG_INFINITY];
     for time in 0..times {
         progress.stage("look at all times", time as usize, times as usize);
-        let values = traced(time.into(), Some(&seeds))?.values;
-        let [low, high] = LineColors::new(&values, None, None, None).range;
+        let of_other = match f64::from(time) == first {
+            true => None,
+            false => Some(traced(time.into(), Some(&seeds))?),
+        };
+        let values = &of_other.as_ref().unwrap_or(&of_first).values;
+        let [low, high] = LineColors::new(values, None, None, None).range;
         range = [range[0].min(low), range[1].max(high)];
     }
     if range[0] < range[1] {

@@ -14,8 +14,11 @@ mod flags;
 mod ground;
 mod moving;
 mod placed;
+mod ribbon;
 mod seeds;
+mod shapes;
 mod style;
+mod surface;
 mod tubes;
 mod value;
 mod variable;
@@ -65,9 +68,31 @@ struct Traced {
     lines: Vec<Line>,
     values: LineValues,
     wind: Wind,
+    /// Of stream lines: seconds of the wind; `None` where vertices have their own.
+    at: Option<f64>,
     /// What the values are, and their unit as the file has it.
     caption: String,
     unit: Option<String>,
+}
+
+/// Of a vertex of a line, with its value, and as it is drawn.
+pub const VERTEX_BYTES: u64 = (size_of::<crate::flow::Vertex>()
+    + size_of::<f64>()
+    + size_of::<moving::Passed>()
+    + size_of::<crate::geometry::Vertex>()) as u64;
+
+/// Bytes of the wind of an input at one of its times; `None` where it has none.
+pub fn wind_bytes(input: &InputFlags) -> Option<u64> {
+    let variables = Variables {
+        input: &InputFlags {
+            variable: None,
+            component: None,
+            ..input.clone()
+        },
+        limits: input.limits(),
+    };
+    let found = components::components(&variables, None, &Progress::of_part()).ok()?;
+    Some(wind::bytes(found.east.0.header(), 1))
 }
 
 /// A kind of file for lines.
@@ -177,6 +202,7 @@ impl FlowFlags {
             lines,
             values,
             wind,
+            at: (!is_of_particles).then_some(start),
             caption,
             unit,
         })

@@ -1,14 +1,16 @@
-//! Lines whose places have times: ways of particles up to a moment, and comets.
+//! Lines whose places have times: ways of particles up to a moment, comets, and spheres at equal times.
 //!
 //! ```text
 //! drawn     what was passed from  now - T  to  now;  of ways without a tail from their begin
 //! radius    width / 2 * (t - (now - T)) / T         of comets; T the length of the tail, now at the head
+//! spheres   at t = 0, T, 2 T ...                    T the largest round time in a sixteenth of the median of all ways
 //! ```
 //!
 //! A particle that is gone leaves its tail behind, which ends a time T later.
 
 use super::film::FilmTime;
 use crate::annotate::ColorLegend;
+use crate::figure::short;
 use glam::DVec3;
 
 /// Thinner than this part of their heads comets end in a point.
@@ -23,6 +25,8 @@ pub struct Passed {
     pub color: [f32; 3],
     /// Seconds, in the order of which places follow each other.
     pub seconds: f64,
+    /// Of ribbons: how far it is turned, radians.
+    pub turn: f64,
 }
 
 /// A way, or a part of one.
@@ -58,8 +62,25 @@ pub enum Tail {
     WholeComet,
 }
 
-/// Places of a line with their colours, and how wide it is there, from 0 to 1.
-pub(super) type Drawn = (Vec<(DVec3, [f32; 3])>, Vec<f64>);
+/// What is drawn of a way.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Drawn {
+    /// Places with their colours.
+    pub line: Vec<(DVec3, [f32; 3])>,
+    /// How wide it is there, from 0 to 1.
+    pub shares: Vec<f64>,
+    /// How far it is turned there, radians.
+    pub turns: Vec<f64>,
+}
+
+/// Spheres along a way of median length, and along all of them.
+const SPHERES: f64 = 16.0;
+const MOST_SPHERES: f64 = 200_000.0;
+/// Round times over which a file of the Earth counts, seconds.
+const ROUND: [f64; 14] = [
+    60.0, 120.0, 300.0, 600.0, 900.0, 1800.0, 3600.0, 7200.0, 10_800.0, 21_600.0, 43_200.0,
+    86_400.0, 172_800.0, 432_000.0,
+];
 
 impl Ways {
     /// Seconds at a time of a film, counted from 0.
@@ -68,6 +89,28 @@ impl Ways {
         let at = |time: f64| self.seconds[(time as usize).min(last)];
         let [before, after] = [film.time.floor(), film.time.ceil()].map(at);
         before + film.time.fract() * (after - before)
+    }
+
+    /// Seconds between spheres along the ways.
+    pub(super) fn time_apart(&self, is_earth: bool) -> f64 {
+        let lengths = self.ways.iter().map(|way| way.ends[1] - way.ends[0]);
+        let mut lengths: Vec<f64> = lengths.filter(|&length| length > 0.0).collect();
+        lengths.sort_by(f64::total_cmp);
+        let median = lengths.get(lengths.len() / 2).copied().unwrap_or(1.0);
+        let all: f64 = lengths.iter().sum();
+        let wanted = (median / SPHERES).max(all / MOST_SPHERES);
+        let of_clock = ROUND.iter().rev().find(|&&round| round <= wanted);
+        match of_clock.filter(|_| is_earth) {
+            Some(&round) => round,
+            None => {
+                let ten = 10.0_f64.powf(wanted.log10().floor());
+                let steps = [5.0, 2.0, 1.0].map(|n| n * ten);
+                steps
+                    .into_iter()
+                    .find(|&step| step <= wanted)
+                    .unwrap_or(ten)
+            }
+        }
     }
 
     /// Seconds from the first time to the last.
@@ -95,8 +138,9 @@ impl Way {
         };
         let mut drawn = Drawn::default();
         let mut add = |passed: Passed| {
-            drawn.0.push((passed.place, passed.color));
-            drawn.1.push(share(passed.seconds));
+            drawn.line.push((passed.place, passed.color));
+            drawn.shares.push(share(passed.seconds));
+            drawn.turns.push(passed.turn);
         };
         for (i, pair) in self.passed.windows(2).enumerate() {
             let [a, b] = [pair[0], pair[1]];
@@ -109,8 +153,40 @@ impl Way {
             }
             add(if is_whole { b } else { b.towards(a, now) });
         }
-        (drawn.0.len() > 1).then_some(drawn)
+        (drawn.line.len() > 1).then_some(drawn)
     }
+
+    /// Where it is, with its colour, at each multiple of a time in seconds, up to a moment where there is one.
+    pub(super) fn marks(&self, now: Option<f64>, step: f64) -> Vec<(DVec3, [f32; 3])> {
+        let now = now.unwrap_or(f64::INFINITY);
+        let mut marks = Vec::new();
+        for (i, pair) in self.passed.windows(2).enumerate() {
+            let [a, b] = [pair[0], pair[1]];
+            // The place between two pieces is of the first.
+            let first = (a.seconds / step).ceil();
+            let first = if i > 0 && first * step == a.seconds {
+                first + 1.0
+            } else {
+                first
+            };
+            let count = ((b.seconds.min(now) / step).floor() - first + 1.0).max(0.0);
+            for k in 0..count as u32 {
+                let passed = a.towards(b, (first + f64::from(k)) * step);
+                marks.push((passed.place, passed.color));
+            }
+        }
+        marks
+    }
+}
+
+/// A time as it is said.
+pub(super) fn in_words(seconds: f64) -> String {
+    let units = [(86_400.0, "d"), (3600.0, "h"), (60.0, "min")];
+    let unit = units
+        .into_iter()
+        .find(|(length, _)| seconds % length == 0.0);
+    let (length, unit) = unit.unwrap_or((1.0, "s"));
+    format!("{} {unit}", short(seconds / length))
 }
 
 impl Passed {
@@ -128,6 +204,7 @@ impl Passed {
             place: self.place.lerp(other.place, part),
             color: [0, 1, 2].map(color),
             seconds,
+            turn: self.turn + part * (other.turn - self.turn),
         }
     }
 }
@@ -142,6 +219,7 @@ mod tests {
             place: DVec3::new(seconds, 0.0, 1.0),
             color: [seconds as f32 / 8.0, 0.5, 0.0],
             seconds,
+            turn: 3.0 * seconds,
         });
         Way {
             passed: passed.collect(),
@@ -152,8 +230,13 @@ mod tests {
 
     /// x and share of each place, whose colour must be that of its x.
     fn drawn(now: Option<f64>, tail: Tail) -> Vec<[f64; 2]> {
-        let (places, shares) = way().drawn(now, tail).unwrap_or_default();
-        for (place, color) in &places {
+        let Drawn {
+            line: places,
+            shares,
+            turns,
+        } = way().drawn(now, tail).unwrap_or_default();
+        for ((place, color), turn) in places.iter().zip(turns) {
+            assert!((turn - 3.0 * place.x).abs() < 1e-12);
             assert_eq!(*color, [place.x as f32 / 8.0, 0.5, 0.0]);
             assert_eq!([place.y, place.z], [0.0, 1.0]);
         }
@@ -191,6 +274,39 @@ mod tests {
         let whole = drawn(None, Tail::WholeComet);
         assert_eq!(whole[..2], [[2.0, POINT], [3.0, 0.25]]);
         assert_eq!(whole[4], [6.0, 1.0]);
+    }
+
+    #[test]
+    fn spheres_lie_at_multiples_of_a_time_up_to_the_moment() {
+        let marks = |now, step| -> Vec<f64> {
+            let marks = way().marks(now, step);
+            marks.iter().map(|(place, _)| place.x).collect()
+        };
+        assert_eq!(marks(None, 1.0), [2.0, 3.0, 4.0, 5.0, 6.0]);
+        assert_eq!(marks(None, 0.75), [2.25, 3.0, 3.75, 4.5, 5.25, 6.0]);
+        assert_eq!(marks(Some(4.4), 0.75), [2.25, 3.0, 3.75]);
+        assert!(marks(Some(1.0), 0.75).is_empty() && marks(None, 7.0).is_empty());
+        let ways = |length: f64| Ways {
+            ways: vec![
+                Way {
+                    ends: [0.0, length],
+                    ..way()
+                };
+                3
+            ],
+            seconds: Vec::new(),
+            legend: None,
+            range: [0.0, 1.0],
+        };
+        for (length, is_earth, wanted) in [
+            (16.0 * 3700.0, true, "1 h"),
+            (16.0 * 3700.0, false, "2000 s"),
+            (16.0 * 899.0, true, "10 min"),
+            (16.0 * 0.06, true, "0.05 s"),
+        ] {
+            let found = ways(length).time_apart(is_earth);
+            assert_eq!(in_words(found), wanted, "{length}");
+        }
     }
 
     #[test]

@@ -1,14 +1,16 @@
 //! Lines, barbs and the ground as they are drawn for a camera.
 //!
 //! ```text
-//! radius = width / 2 pixels where the camera is turned to
+//! radius = width / 2 pixels where the camera is turned to; of kilometres at least 0.6 pixels there
 //! map    at sea level; on a level section of the Earth at the face of the slab that is seen
 //! head   a round cone from 2.8 radii to none, 10 radii long, every 60 pixels; of a comet its end (`moving`)
 //! ```
 
-use super::drawn::DrawnLines;
+use super::drawn::{DrawnLines, Width};
+use super::ribbon::strip;
+use super::style::THINNEST_PIXELS;
 use crate::camera::Camera;
-use crate::geometry::{Geometry, RoundCones, Vertex};
+use crate::geometry::{Geometry, RoundCones, Triangles, Vertex};
 use glam::DVec3;
 
 /// Of arrow heads: how far apart in pixels, how wide and how long in radii.
@@ -25,8 +27,25 @@ impl DrawnLines {
         let forward = camera.frame().forward;
         let is_level = forward.z.abs() > 1.0 - LEVEL;
         let mut cones = RoundCones::default();
+        let mut triangles = match &self.ground {
+            Some(ground) => ground.triangles.clone(),
+            None => Triangles::default(),
+        };
+        let to_eye = |place: DVec3| match camera.projection.is_perspective() {
+            true => (camera.eye - place).normalize_or_zero(),
+            false => -forward,
+        };
         for set in &self.sets {
-            let widest = 0.5 * set.width_pixels * pixel;
+            let widest = match set.width {
+                Width::Pixels(width) => 0.5 * width * pixel,
+                Width::World(width) => 0.5 * width.max(THINNEST_PIXELS * pixel),
+            };
+            if let Some(turns) = &set.turns {
+                for (line, turns) in set.lines.iter().zip(turns) {
+                    strip(line, turns, widest).add(&mut triangles, to_eye);
+                }
+                continue;
+            }
             let height = set.on_section.filter(|_| is_level);
             let height = height.map(|half| camera.target.z - half * forward.z);
             for (i, line) in set.lines.iter().enumerate() {
@@ -62,18 +81,12 @@ impl DrawnLines {
                 }
             }
         }
-        let mut geometry = Geometry::from(cones);
-        if let Some(ground) = &self.ground {
-            geometry.triangles = ground.triangles.clone();
+        for surface in &self.surfaces {
+            surface.add(&mut triangles, to_eye);
         }
+        let mut geometry = Geometry { cones, triangles };
         if let Some(barbs) = &self.barbs {
-            let forward = camera.frame().forward;
-            barbs.add(&mut geometry, pixel, |place| {
-                match camera.projection.is_perspective() {
-                    true => (camera.eye - place).normalize_or_zero(),
-                    false => -forward,
-                }
-            });
+            barbs.add(&mut geometry, pixel, to_eye);
         }
         geometry
     }

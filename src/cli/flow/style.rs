@@ -1,10 +1,14 @@
 //! How lines look in a picture: the words.
 
+use super::drawn::Width;
 use super::flags::duration;
 use crate::cli::{Error, flags::Numbers};
+use crate::figure::short;
 use crate::transfer::Colormap;
+use crate::volume::{Grid, Header};
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
+use std::str::FromStr;
 
 /// What stands for a line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
@@ -17,6 +21,10 @@ pub enum StyleWord {
     Arrows,
     /// A head with a tail that grows thin: particles that move in a film
     Comets,
+    /// Spheres at equal times, which are said: the farther apart the faster
+    Points,
+    /// A flat strip that turns as the air does
+    Ribbons,
 }
 
 /// The words, none of them filled in.
@@ -32,11 +40,11 @@ pub struct FlowStyleFlags {
     #[arg(long, value_name = "T", value_parser = duration, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub comet_time: Option<f64>,
-    /// Width of lines in pixels, where the camera is turned to, up to an eighth of the height of the picture
-    /// [default: 3, of the heads of comets 6]
-    #[arg(long, value_name = "PX", value_parser = width, help_heading = HEADING)]
+    /// Width of lines in pixels, where the camera is turned to, up to an eighth of the height of the picture; or with km
+    /// in kilometres of the Earth [default: 3, of the heads of comets 6, of spheres 8, of ribbons 12]
+    #[arg(long, value_name = "PX|Nkm", help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub flow_width: Option<f64>,
+    pub flow_width: Option<WidthWord>,
     /// Values at the ends of the colours of lines [default: from 0 to what 99.9 % of them are under]
     #[arg(long, value_name = "LO,HI", allow_hyphen_values = true, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -71,15 +79,84 @@ impl FlowStyleFlags {
             range.check_rises("--flow-range", "0,30")?;
         }
         let most = (WIDEST_PART * f64::from(height)).max(WIDEST_AT_LEAST);
-        match self.flow_width.filter(|&width| width > most) {
-            Some(width) => Err(Error::usage(
+        match self.flow_width {
+            Some(WidthWord::Pixels(width)) if width > most => Err(Error::usage(
                 format!(
                     "--flow-width {width}: wanted at most {most} pixels of a picture of {height} rows"
                 ),
                 format!("--flow-width {most}"),
             )),
-            None => Ok(()),
+            _ => Ok(()),
         }
+    }
+}
+
+/// How wide lines are.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum WidthWord {
+    /// Where the camera is turned to.
+    Pixels(f64),
+    /// On the Earth.
+    Kilometres {
+        /// How many.
+        km: f64,
+    },
+}
+
+impl WidthWord {
+    /// The same in the world of a volume.
+    pub(super) fn in_world(self, header: &Header) -> Result<Width, Error> {
+        let km = match self {
+            Self::Pixels(pixels) => return Ok(Width::Pixels(pixels)),
+            Self::Kilometres { km } => km,
+        };
+        let metres = header.length_metres.filter(|_| header.is_earth);
+        let metres = metres.ok_or_else(|| {
+            Error::usage(
+                format!("--flow-width {km}km is of the Earth, and the volume does not lie there"),
+                "--flow-width N is in pixels",
+            )
+        })?;
+        let grid = Grid {
+            dims: header.dims,
+            world_from_voxel: header.world_from_voxel,
+        };
+        let (width, most) = (1000.0 * km / metres, WIDEST_PART * grid.diagonal());
+        match width > 0.0 && width <= most {
+            true => Ok(Width::World(width)),
+            false => Err(Error::usage(
+                format!(
+                    "--flow-width {km}km: wanted over 0 and at most {}km, an eighth of the diagonal of the volume",
+                    short(most * metres / 1000.0)
+                ),
+                "--flow-width 3 is in pixels",
+            )),
+        }
+    }
+}
+
+impl FromStr for WidthWord {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (number, is_km) = match text.strip_suffix("km") {
+            Some(number) => (number, true),
+            None => (text, false),
+        };
+        let number = number.trim().parse().ok();
+        let least = if is_km { 1e-6 } else { THINNEST_PIXELS };
+        let number =
+            number.filter(|n: &f64| (least..=if is_km { 1e5 } else { 1000.0 }).contains(n));
+        let number = number.ok_or_else(|| {
+            format!(
+                "wanted {THINNEST_PIXELS} to 1000 pixels: a thinner line is missed by pixels, or a length such as 20km, found {text}"
+            )
+        })?;
+        Ok(match is_km {
+            true => Self::Kilometres { km: number },
+            false => Self::Pixels(number),
+        })
     }
 }
 
@@ -90,15 +167,7 @@ const WIDEST_PART: f64 = 0.125;
 const WIDEST_AT_LEAST: f64 = 16.0;
 
 /// A line is no thinner, else pixels miss it.
-const THINNEST_PIXELS: f64 = 1.2;
-
-fn width(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok();
-    let number = number.filter(|n: &f64| (THINNEST_PIXELS..=1000.0).contains(n));
-    number.ok_or_else(|| {
-        format!("wanted {THINNEST_PIXELS} to 1000 pixels: a thinner line is missed by pixels, found {text}")
-    })
-}
+pub(super) const THINNEST_PIXELS: f64 = 1.2;
 
 fn map(text: &str) -> Result<String, String> {
     match Colormap::from_name(text) {

@@ -33,36 +33,32 @@ pub fn read(
     progress: &Progress,
 ) -> Result<Wind, Error> {
     let components = components(variables, words, progress)?;
-    let header = components.east.0.header().clone();
-    let grid = grid_of(&header);
-    check_grids(&components, &header)?;
-    let is_new = |note: &&String| said.is_none_or(|said| !said.contains(note));
-    for note in header.notes.iter().filter(is_new) {
-        progress.note(note);
-    }
-    let (units, up) = units(&components, &header, progress)?;
+    let whole = components.east.0.header().clone();
+    check_grids(&components, &whole)?;
     let times = match at {
         Some(time) => between(time),
         None => {
-            let (times, note) = times(variables, &header, word)?;
+            let (times, note) = times(variables, &whole, word)?;
             let note = note.filter(|_| said.is_none());
             note.iter().for_each(|note| progress.note(note));
             times
         }
     };
-    let voxels = header.voxel_count();
-    let wanted = voxels.saturating_mul(12 * times.len() as u64 + 12);
-    if wanted > variables.limits.max_bytes {
-        return Err(Error::Memory(format!(
-            "the wind of {} takes {wanted} bytes, and there are {}",
-            match times.len() {
-                1 => "one time".to_owned(),
-                count => format!("{count} times"),
-            },
-            variables.limits.max_bytes
-        )));
+    let factor = fitting_factor(&whole, times.len() as u64, variables)?;
+    let components = components.reduced(factor);
+    let header = components.east.0.header().clone();
+    let grid = grid_of(&header);
+    let is_new = |note: &&String| said.is_none_or(|said| !said.contains(note));
+    for note in header.notes.iter().filter(is_new) {
+        progress.note(note);
     }
-    let ground = ground::heights(variables, &header)?;
+    let (units, up) = units(&components, &header, progress)?;
+    // Of reduced columns the means.
+    let columns = |all: Vec<f64>| match factor {
+        1 => all,
+        _ => mean_columns(&all, whole.dims, factor),
+    };
+    let ground = ground::heights(variables, &whole)?.map(columns);
     let mut snapshots = Vec::new();
     for (done, &(time, seconds)) in times.iter().enumerate() {
         progress.stage("read", done, times.len());
@@ -99,7 +95,7 @@ pub fn read(
         });
         snapshots.push((seconds, snapshot));
     }
-    let map = ground::map_factors(variables, &header)?;
+    let map = ground::map_factors(variables, &whole)?.map(|map| map.map(columns));
     let metric = metric_of(&header, units[2].kind, map);
     let failed = |error: FieldError| Error::usage(format!("--flow: {error}"), "--wind U,V,none");
     let mut field = GridField::new(grid, snapshots, metric).map_err(failed)?;
@@ -112,6 +108,53 @@ pub fn read(
         grid,
         times,
     })
+}
+
+/// Bytes of the wind of a header at so many times.
+pub fn bytes(header: &Header, times: u64) -> u64 {
+    header.voxel_count().saturating_mul(VECTOR_BYTES * times)
+}
+
+/// Of a wind at a voxel and a time.
+const VECTOR_BYTES: u64 = 12;
+
+/// By how much each axis has to shrink for the wind to fit, and one time while it is read: 1 but for `--fit`.
+fn fitting_factor(header: &Header, times: u64, variables: &Variables<'_>) -> Result<u32, Error> {
+    let (wanted, there) = (bytes(header, times + 1), variables.limits.max_bytes);
+    let fits = |factor: &u32| {
+        let dims = header.dims.map(|n| n.div_ceil(*factor));
+        let reduced = Header {
+            dims,
+            ..header.clone()
+        };
+        bytes(&reduced, times + 1) <= there
+    };
+    let largest = header.dims.into_iter().max().unwrap_or(1);
+    let factor = (1..=largest).find(fits).unwrap_or(largest);
+    match factor == 1 || variables.input.fit {
+        true => Ok(factor),
+        false => Err(Error::Memory(format!(
+            "the wind of {} takes {wanted} bytes, and there are {there}; --fit takes means of blocks of it",
+            match times {
+                1 => "one time".to_owned(),
+                count => format!("{count} times"),
+            },
+        ))),
+    }
+}
+
+/// Means of numbers of one a column over blocks of so many columns a side.
+fn mean_columns(all: &[f64], dims: [u32; 3], factor: u32) -> Vec<f64> {
+    let [nx, ny, _] = dims.map(|n| n as usize);
+    let factor = factor as usize;
+    let blocks = (0..ny).step_by(factor);
+    let blocks = blocks.flat_map(|y| (0..nx).step_by(factor).map(move |x| [x, y]));
+    let mean = |[x, y]: [usize; 2]| {
+        let [to_x, to_y] = [(x + factor).min(nx), (y + factor).min(ny)];
+        let rows = (y..to_y).map(|y| all[y * nx + x..y * nx + to_x].iter().sum::<f64>());
+        rows.sum::<f64>() / ((to_x - x) * (to_y - y)) as f64
+    };
+    blocks.map(mean).collect()
 }
 
 /// The units, and whether the upward component is one that moves what is drawn.

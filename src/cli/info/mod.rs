@@ -1,6 +1,7 @@
 //! `stratavox info`: what a volume is, before anything is drawn.
 
 mod bars;
+mod beside;
 mod earth;
 mod place;
 mod structure;
@@ -21,6 +22,7 @@ use crate::volume::{
     ComponentKind, DerivedVariable, Grid, Header, Limits, MapProjection, Problem, ReadError,
     Source, Statistics, TimeComponent,
 };
+use beside::DrawnBytes;
 use clap::Args;
 use glam::DVec3;
 use serde::Serialize;
@@ -72,7 +74,7 @@ struct Report {
     map: Option<MapProjection>,
     /// Resolutions that `--level` chooses from.
     levels: u32,
-    render_bytes: RenderBytes,
+    render_bytes: DrawnBytes,
     /// Of a device that computes on the CPU, which keeps 8-bit numbers in another way too.
     software_device_bytes: u64,
     /// Of values; `null` where the file is silent.
@@ -154,14 +156,16 @@ impl Info {
         };
         // What follows is said without a line of progress beside it.
         drop(progress);
-        let mut report = report(header, &statistics);
+        // A stranger's file is not opened again and again.
+        let wind_of = Some(&self.input).filter(|input| self.json && !input.untrusted);
+        let mut report = report(header, &statistics, wind_of);
         report.structure = structure;
         if header.is_earth {
             // Uneven levels are drawn from even ones, of which there are more.
             let drawn = self.input.open(&limits)?;
             let is_other = drawn.header().dims != header.dims;
             let has_holes = is_other || has_holes(&statistics);
-            report.render_bytes = RenderBytes::of(drawn.header(), has_holes);
+            report.render_bytes.volume = RenderBytes::of(drawn.header(), has_holes);
             report.software_device_bytes = software_device_bytes(drawn.header(), has_holes);
         }
         if self.json {
@@ -234,7 +238,7 @@ fn meaning(header: &Header) -> (&'static str, Vec<ChannelReport>) {
     (word, channels.collect())
 }
 
-fn report(header: &Header, statistics: &Statistics) -> Report {
+fn report(header: &Header, statistics: &Statistics, wind_of: Option<&InputFlags>) -> Report {
     let grid = Grid {
         dims: header.dims,
         world_from_voxel: header.world_from_voxel,
@@ -263,7 +267,11 @@ fn report(header: &Header, statistics: &Statistics) -> Report {
         derived: header.derived.clone(),
         map: header.map,
         levels: header.levels,
-        render_bytes: RenderBytes::of(header, has_holes(statistics)),
+        render_bytes: DrawnBytes::of(
+            RenderBytes::of(header, has_holes(statistics)),
+            header,
+            wind_of,
+        ),
         software_device_bytes: software_device_bytes(header, has_holes(statistics)),
         unit: unit(header),
         long_name: header.long_name.clone(),

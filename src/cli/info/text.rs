@@ -235,7 +235,7 @@ impl Page<'_> {
         };
         let degrees = format!("azimuth {azimuth}, elevation {elevation} degrees{others}");
         lines.say("seen from", degrees);
-        let RenderBytes { host, device } = self.report.render_bytes;
+        let RenderBytes { host, device } = self.report.render_bytes.volume;
         let on_cpu = match self.report.software_device_bytes {
             same if same == device => String::new(),
             other => format!(", {} by rays on llvmpipe", bytes(other)),

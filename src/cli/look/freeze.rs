@@ -140,9 +140,11 @@ impl<'a> Chosen<'a> {
         };
         let of_numbers = channels.iter().filter(|one| one.role == Role::Numbers);
         let of_numbers: Vec<_> = of_numbers.collect();
-        let words = &mut scene.with.with;
-        let first = of_numbers.len().saturating_sub(words.len());
-        for (word, channel) in words.iter_mut().zip(&of_numbers[first..]) {
+        let first = of_numbers
+            .len()
+            .saturating_sub(scene.with.volumes().count());
+        let words = scene.with.with.iter_mut().filter(|word| !word.is_shape());
+        for (word, channel) in words.zip(&of_numbers[first..]) {
             if let Some(function) = channel.transfer {
                 word.function = Some(inlined(function));
                 (word.preset, word.colormap, word.color, word.window) = (None, None, None, None);

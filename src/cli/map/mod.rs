@@ -3,6 +3,7 @@
 //! ```text
 //! margin      a fifth of the box's larger side around it; along x no more than once around the Earth together
 //! graticule   meridians and parallels every 1, 2, 5, 10, 15 or 30 degrees, four of them at least
+//! coarser     40 degrees and wider: places of coast and borders nearer to the last than a 2000th of the width are left out
 //! ```
 
 mod coast;
@@ -136,6 +137,11 @@ pub struct GroundLine {
 const MARGIN: f64 = 0.2;
 /// Degrees between lines of a graticule.
 const STEPS: [f64; 8] = [0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0];
+/// Kilometres.
+const KM_PER_DEGREE: f64 = 111.2;
+/// Degrees from which on coasts are coarser, and how many places lie along a line across the picture.
+const WIDE: f64 = 40.0;
+const FINEST: f64 = 2000.0;
 /// More lines of a graticule are a grey sheet.
 const MOST_OF_GRATICULE: usize = 360;
 /// Grey and pixels of coast, borders and graticule.
@@ -210,7 +216,13 @@ impl MapWords {
         }
         let mut add = |all: &Lines, look| {
             let places = all.iter().map(|line| line.as_slice());
-            area.add(&mut lines, &projected(&projection, &area, places), look);
+            let mut places = projected(&projection, &area, places);
+            if area.width() >= WIDE * KM_PER_DEGREE {
+                places
+                    .iter_mut()
+                    .for_each(|line| thin(line, area.width() / FINEST));
+            }
+            area.add(&mut lines, &places, look);
         };
         if self.borders {
             add(&earth().borders, BORDERS);
@@ -219,6 +231,22 @@ impl MapWords {
             add(coast()?, COAST);
         }
         Ok(lines)
+    }
+}
+
+/// Leaves out places nearer than a length to the last one that is left, but for both ends.
+fn thin(line: &mut Vec<[f64; 2]>, length: f64) {
+    let end = line.last().copied();
+    let mut last: Option<[f64; 2]> = None;
+    line.retain(|&[x, y]| {
+        let is_far = last.is_none_or(|[a, b]| (x - a).hypot(y - b) >= length);
+        if is_far {
+            last = Some([x, y]);
+        }
+        is_far
+    });
+    if let Some(end) = end.filter(|end| last != Some(*end)) {
+        line.push(end);
     }
 }
 
@@ -357,7 +385,7 @@ type GraticuleLine = (Vec<[f64; 2]>, (f64, bool));
 /// Meridians and parallels.
 fn graticule(area: &Area, degrees: f64) -> Vec<GraticuleLine> {
     let kilometres = (area.high[1] - area.low[1]).max(area.width());
-    let span = kilometres / 111.2;
+    let span = kilometres / KM_PER_DEGREE;
     let step = match degrees > 0.0 {
         true => degrees,
         false => STEPS
@@ -454,6 +482,27 @@ impl From<MapWords> for String {
 mod tests {
     use super::*;
     use glam::DAffine3;
+
+    #[test]
+    fn a_thin_line_stays_within_a_length_of_the_whole_one_and_keeps_its_ends() {
+        let whole: Vec<[f64; 2]> = (0..=1000)
+            .map(|i| f64::from(i) * 0.01)
+            .map(|x| [x, (3.0 * x).sin()])
+            .collect();
+        let mut thinned = whole.clone();
+        thin(&mut thinned, 0.25);
+        assert!(
+            thinned.len() < 120 && thinned.len() > 40,
+            "{}",
+            thinned.len()
+        );
+        assert_eq!(thinned.first(), whole.first());
+        assert_eq!(thinned.last(), whole.last());
+        for [x, y] in &whole {
+            let near = |[a, b]: &[f64; 2]| (x - a).hypot(y - b) < 0.25;
+            assert!(thinned.iter().any(near), "{x}");
+        }
+    }
 
     #[test]
     fn a_margin_goes_no_farther_than_around_the_earth() {

@@ -16,7 +16,7 @@ impl SceneInputs {
             let others = self.others_for(scene.opacity.word())?;
             others.push(reader.opacity(&grid, height_factor)?);
         }
-        if !scene.with.with.is_empty() {
+        if scene.with.volumes().next().is_some() {
             let others = self.others_for("--with")?;
             others.extend(reader.with(&grid, height_factor)?);
             is_hiding = reader.mode == Mode::Composite;

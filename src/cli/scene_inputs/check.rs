@@ -9,7 +9,7 @@ use crate::technique::{Filter, Mode, Settings, Technique};
 use crate::volume::Header;
 /// Which of the numbers of a voxel are drawn, and what a person should know of it.
 pub(super) fn plan(scene: &SceneFlags, header: &Header) -> Result<(Plan, Option<String>), Error> {
-    let beside = scene.with.with.len() + usize::from(scene.labels.labels.is_some());
+    let beside = scene.with.volumes().count() + usize::from(scene.labels.labels.is_some());
     let room = (MAX_CHANNELS as usize).saturating_sub(beside);
     scene.channels.plan(&scene.input, header, room)
 }
@@ -27,7 +27,7 @@ pub fn shows_several(scene: &SceneFlags, header: &Header) -> Result<bool, Error>
 /// True where words name something that is mixed with the volume, sample by sample. Labels are in composites alone.
 pub(super) fn has_beside(scene: &SceneFlags, mode: Mode) -> bool {
     (scene.labels.labels.is_some() && mode == Mode::Composite)
-        || !scene.with.with.is_empty()
+        || scene.with.volumes().next().is_some()
         || scene.modes.paint(mode).is_some()
         || scene.opacity.are_given()
         || scene.sampling.preclassified
@@ -52,7 +52,7 @@ pub fn check(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
 
 /// What volumes of `--with` do not go with.
 fn check_with(scene: &SceneFlags, mode: Mode) -> Result<(), Error> {
-    let with = scene.with.with.len();
+    let with = scene.with.volumes().count();
     if with == 0 {
         return Ok(());
     }
@@ -103,7 +103,7 @@ fn check_lines(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
     if !scene.has_lines() {
         return match scene.flow_style.hide_volume {
             true => Err(Error::usage(
-                "--hide-volume leaves nothing without --flow, --map, --barbs or --ground",
+                "--hide-volume leaves nothing without --flow, --map, --barbs, --ground or a surface or points by --with",
                 "leave it out",
             )),
             false => Ok(()),

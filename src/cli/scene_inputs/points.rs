@@ -165,7 +165,7 @@ pub fn spheres(
 fn check_words(scene: &SceneFlags, mode: Mode) -> Result<(), Error> {
     let of_volumes = [
         ("--labels", scene.labels.labels.is_some()),
-        ("--with", !scene.with.with.is_empty()),
+        ("--with", scene.with.volumes().next().is_some()),
         (scene.opacity.word(), scene.opacity.are_given()),
         ("--preclassified", scene.sampling.preclassified),
         ("--iso-color-by", scene.modes.paint(mode).is_some()),

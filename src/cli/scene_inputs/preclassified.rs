@@ -32,7 +32,7 @@ pub fn check(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
         )
     } else if scene.labels.labels.is_some() {
         refused("--labels lies over it", "leave out --labels")
-    } else if !scene.with.with.is_empty() {
+    } else if scene.with.volumes().next().is_some() {
         refused("--with lies beside it", "leave out --with")
     } else if scene.opacity.are_given() {
         refused("other numbers make it opaque", "leave out one of them")

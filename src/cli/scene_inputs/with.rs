@@ -19,7 +19,7 @@ const PLACES: u32 = 16;
 impl Reader<'_> {
     /// All volumes of `--with`, for one on `grid` whose heights are drawn so much higher.
     pub(super) fn with(&self, grid: &Grid, height_factor: f64) -> Result<Vec<Other>, Error> {
-        let words = self.scene.with.with.iter().enumerate();
+        let words = self.scene.with.volumes().enumerate();
         let read = words.map(|(nth, word)| {
             let read = self.with_one(nth, word, grid, height_factor);
             read.map_err(|error| error.of_with(word))

@@ -12,11 +12,9 @@ mod geojson;
 mod shapefile;
 mod topojson;
 
-use super::convert::to_u64;
-use super::place::open_regular;
-use super::problem::{at, io};
+use super::place::whole;
+use super::problem::at;
 use crate::volume::{Limits, Problem, ReadError};
-use std::io::Read;
 use std::path::Path;
 
 /// Longitudes and latitudes along a line, degrees.
@@ -34,7 +32,8 @@ const ROUNDING: f64 = 1e-6;
 /// The file is of neither kind, is cut, holds no lines, or says something that cannot be. The error names the file, the
 /// field, what was wanted and what was found.
 pub fn read_lines(path: &Path, limits: &Limits) -> Result<Vec<GeographicLine>, ReadError> {
-    let bytes = bytes_of(path, limits).map_err(at(path))?;
+    let most = MOST_BYTES.min(limits.max_bytes);
+    let bytes = whole(path, most, "a file of lines on the Earth").map_err(at(path))?;
     let lines = match &bytes {
         bytes if shapefile::recognizes(bytes) => shapefile::lines(bytes),
         bytes => match text_of(bytes) {
@@ -52,24 +51,6 @@ pub fn read_lines(path: &Path, limits: &Limits) -> Result<Vec<GeographicLine>, R
 fn text_of(bytes: &[u8]) -> Option<&[u8]> {
     let text = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
     text.trim_ascii_start().starts_with(b"{").then_some(text)
-}
-
-fn bytes_of(path: &Path, limits: &Limits) -> Result<Vec<u8>, Problem> {
-    let (file, metadata) = open_regular(path)?;
-    let most = MOST_BYTES.min(limits.max_bytes);
-    let mut bytes = Vec::new();
-    // It may grow while it is read.
-    let found = file.take(most.saturating_add(1)).read_to_end(&mut bytes);
-    found.map_err(io("reading the file"))?;
-    let count = to_u64(bytes.len()).max(metadata.len());
-    if count > most {
-        return Err(Problem::Limit {
-            what: "a file of lines on the Earth".to_owned(),
-            wanted_bytes: count,
-            limit_bytes: most,
-        });
-    }
-    Ok(bytes)
 }
 
 /// A place in degrees, or what is wrong with it: its number, what would do.

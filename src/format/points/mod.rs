@@ -38,7 +38,6 @@ use super::problem::{at, invalid};
 use crate::volume::{Limits, ReadError, Source, VolumeSelection};
 use std::path::Path;
 
-pub(super) use ply::recognizes as recognizes_ply;
 pub(super) use vtp::recognizes as recognizes_vtp;
 
 /// What names of files of points end with.
@@ -95,7 +94,7 @@ pub fn open_points(
     if super::netcdf::recognizes(&first) || super::hdf5::recognizes(&first) {
         return super::netcdf::open_samples(path, columns, limits);
     }
-    if ply::recognizes(&first) || ends_with(path, "ply") {
+    if super::ply::recognizes(&first) || ends_with(path, "ply") {
         ply::open(path, columns, limits)
     } else if vtp::recognizes(&first) || ends_with(path, "vtp") {
         vtp::open(path, columns, limits)

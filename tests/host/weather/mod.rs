@@ -3,6 +3,8 @@
 //! A check says what is off. Without a fault nothing is, and with each of them something must be: else it proves nothing.
 //! `docs/weather.md` lists them.
 
+#[cfg(feature = "netcdf")]
+mod columns;
 #[cfg(feature = "phantoms")]
 mod flows;
 mod globe;

@@ -76,6 +76,17 @@ pub(super) struct Request<'a> {
     pub said: &'a [String],
 }
 
+/// What is said of lines, said of barbs.
+fn of_barbs(error: Error) -> Error {
+    match error {
+        Error::Usage { message, hint } => Error::Usage {
+            message: message.replace("--flow: ", "--barbs: "),
+            hint,
+        },
+        other => other,
+    }
+}
+
 impl Barbs {
     /// Reads the wind, of which `of_wind` hears what was not said of it.
     pub fn read(
@@ -90,7 +101,8 @@ impl Barbs {
         let at = request.of_film.map(|film| film.time);
         let names = request.wind.as_ref();
         let said = Some(request.said);
-        let wind = wind::read(&variables, names, FlowWord::Stream, at, said, of_wind)?;
+        let wind = wind::read(&variables, names, FlowWord::Stream, at, said, of_wind);
+        let wind = wind.map_err(of_barbs)?;
         let time = at.map_or(0.0, f64::fract);
         let place = request.words.place;
         let height = place.unwrap_or(LevelOrHeight::Level(0));

@@ -3,7 +3,6 @@
 //! A file with faces is a surface, and one with the properties of Gaussian splats (3DGS) draws by another law: both are refused by
 //! name. Elements behind the vertices are not looked at.
 
-mod header;
 mod vertices;
 
 use super::PointColumns;
@@ -11,24 +10,15 @@ use super::gathered::Gathered;
 use super::quantity::without_unit;
 use super::roles::{Roles, Table};
 use super::source::{Names, PointFile};
+use crate::format::place::open_regular;
+use crate::format::ply::{Element, Head, PLY};
 use crate::format::problem::{at, missing, unsupported};
 use crate::volume::{Format, Limits, Problem, ReadError};
-use header::{Element, Head};
+use std::io::BufReader;
 use std::path::Path;
-
-/// The word of errors.
-const PLY: &str = "ply";
 
 /// Properties that say how a Gaussian splat looks.
 const OF_SPLATS: [&str; 3] = ["f_dc_0", "scale_0", "rot_0"];
-
-/// Elements that make a surface of vertices.
-const OF_SURFACES: [&str; 2] = ["face", "tristrips"];
-
-/// True where a file begins as every PLY file does.
-pub(in crate::format) fn recognizes(first: &[u8]) -> bool {
-    first.starts_with(b"ply\n") || first.starts_with(b"ply\r\n")
-}
 
 /// Opens vertices.
 pub(super) fn open(
@@ -45,7 +35,8 @@ fn gathered(
     wanted: &PointColumns,
     limits: &Limits,
 ) -> Result<(Gathered, Names), Problem> {
-    let head = Head::read(path, limits.max_header_bytes)?;
+    let (file, _) = open_regular(path)?;
+    let head = Head::read(BufReader::new(file), limits.max_header_bytes)?;
     let vertices = vertices_of(&head)?;
     let names: Vec<String> = vertices.properties.iter().map(|p| p.name.clone()).collect();
     let roles = Roles::of(
@@ -70,9 +61,7 @@ fn gathered(
 
 /// The element of vertices, of a file that is a set of points.
 fn vertices_of(head: &Head) -> Result<&Element, Problem> {
-    let is_surface =
-        |element: &&Element| OF_SURFACES.contains(&element.name.as_str()) && element.count > 0;
-    if head.elements.iter().any(|element| is_surface(&element)) {
+    if head.has_faces() {
         return Err(unsupported(PLY, "a mesh (a file with faces)"));
     }
     let mut all = head.elements.iter();

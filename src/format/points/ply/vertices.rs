@@ -1,11 +1,9 @@
 //! The numbers of vertices, in words or bytes.
 
-use super::PLY;
-use super::header::{Element, Encoding, Head};
-use crate::format::convert::{Endian, to_u64};
+use crate::format::convert::{Endian, decoded, to_u64};
 use crate::format::place::open_regular;
+use crate::format::ply::{Element, Encoding, Head, PLY};
 use crate::format::points::gathered::{Gathered, Row};
-use crate::format::points::numbers::decoded;
 use crate::format::points::roles::Roles;
 use crate::format::problem::{self, invalid, unsupported};
 use crate::format::text::number;
@@ -201,7 +199,7 @@ impl Start {
 /// Where in a vertex each property stands, and its type.
 fn places(vertices: &Element) -> Vec<(usize, VoxelType)> {
     let mut start = 0_usize;
-    let types = vertices.properties.iter().filter_map(|p| p.stored);
+    let types = vertices.properties.iter().map(|p| p.stored);
     types
         .map(|stored| {
             let place = (start, stored);

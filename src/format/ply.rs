@@ -1,16 +1,21 @@
 //! The head of a PLY file: its encoding, and its elements with their properties.
 
-use super::PLY;
-use crate::format::place::open_regular;
-use crate::format::problem::{escape, invalid, missing, unsupported};
-use crate::format::text::Lines;
+use super::problem::{escape, invalid, missing, unsupported};
+use super::text::Lines;
 use crate::volume::{Problem, VoxelType};
-use std::io::BufReader;
-use std::path::Path;
+use std::io::BufRead;
+
+/// The word of errors.
+pub(super) const PLY: &str = "ply";
 
 /// Properties of one element.
 const MOST_PROPERTIES: usize = 4096;
 const MOST_ELEMENTS: usize = 64;
+
+/// True where a file begins as every PLY file does.
+pub(super) fn recognizes(first: &[u8]) -> bool {
+    first.starts_with(b"ply\n") || first.starts_with(b"ply\r\n")
+}
 
 /// How numbers are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,8 +28,10 @@ pub(super) enum Encoding {
 #[derive(Debug)]
 pub(super) struct Property {
     pub name: String,
-    /// `None` of a list, whose length stands in the file.
-    pub stored: Option<VoxelType>,
+    /// Of a number, or of each in a list.
+    pub stored: VoxelType,
+    /// Of a list: how its length is written, which stands before it.
+    pub length: Option<VoxelType>,
 }
 
 #[derive(Debug)]
@@ -48,16 +55,24 @@ impl Element {
     /// Bytes of one, if all have as many.
     pub(super) fn bytes(&self) -> Option<u64> {
         self.properties.iter().try_fold(0_u64, |sum, property| {
-            let bytes = u64::try_from(property.stored?.bytes()).ok()?;
-            sum.checked_add(bytes)
+            let bytes = u64::try_from(property.stored.bytes()).ok()?;
+            sum.checked_add(bytes).filter(|_| property.length.is_none())
         })
     }
 }
 
+/// Elements that make a surface of vertices.
+const OF_SURFACES: [&str; 2] = ["face", "tristrips"];
+
 impl Head {
-    pub(super) fn read(path: &Path, limit_bytes: usize) -> Result<Self, Problem> {
-        let (file, _) = open_regular(path)?;
-        let mut lines = Lines::new(BufReader::new(file), limit_bytes);
+    /// True where the vertices are those of a surface.
+    pub(super) fn has_faces(&self) -> bool {
+        let mut all = self.elements.iter();
+        all.any(|e| OF_SURFACES.contains(&e.name.as_str()) && e.count > 0)
+    }
+
+    pub(super) fn read(input: impl BufRead, limit_bytes: usize) -> Result<Self, Problem> {
+        let mut lines = Lines::new(input, limit_bytes);
         let mut encoding = None;
         let mut elements: Vec<Element> = Vec::new();
         let mut count = 0_u64;
@@ -125,17 +140,15 @@ impl Head {
 }
 
 fn property(words: &[&str]) -> Option<Property> {
-    let (name, stored) = match words {
-        ["list", length, stored, name] => {
-            stored_type(length).and(stored_type(stored))?;
-            (name, None)
-        }
-        [stored, name] => (name, Some(stored_type(stored)?)),
+    let (name, stored, length) = match words {
+        ["list", length, stored, name] => (name, stored, Some(stored_type(length)?)),
+        [stored, name] => (name, stored, None),
         _ => return None,
     };
     Some(Property {
         name: (*name).to_owned(),
-        stored,
+        stored: stored_type(stored)?,
+        length,
     })
 }
 
