@@ -281,11 +281,11 @@ impl PathTracing {
         };
         let widgets = function.gradient_transfer.as_ref();
         let widgets = widgets.map_or(0, |g| (g.share.len() + g.widgets.len()) as u32);
-        let is_graded = function.uses_gradient();
+        let uses_gradient = function.uses_gradient();
         let are_several = beside.is_some();
         let event = sum(&[
-            (is_graded, TURNS_OF_GRADIENT + widgets),
-            (is_graded && has_holes, 33 * TURNS_OF_MASK),
+            (uses_gradient, TURNS_OF_GRADIENT + widgets),
+            (uses_gradient && has_holes, 33 * TURNS_OF_MASK),
             (are_several, TURNS_OF_CHANNELS),
             (are_several && has_holes, 8 * TURNS_OF_MASK),
             (are_several && is_searched, 8 * points),
