@@ -163,14 +163,15 @@ fn without_bounces_gradients_and_channels_are_the_composite() {
             let pairs = || paths.pixels.iter().zip(&rays.pixels);
             let n = pairs().count() as f64;
             let off = pairs().map(|(a, b)| f64::from(a[channel] - b[channel]));
-            let variance = pairs().map(|(_, b)| f64::from(b[3] * (1.0 - b[3])) / 32.0);
+            // Colours of what is met differ: E[c^2] is no more than the chance that something is.
+            let variance = pairs().map(|(_, b)| f64::from(b[3]) / 32.0);
             let (off, error) = (off.sum::<f64>() / n, variance.sum::<f64>().sqrt() / n);
             println!("{name} {channel}: {off} +- {error}");
             assert!(
                 off.abs() < 4.0 * error,
                 "{name} {channel}: {off} +- {error}"
             );
-            assert!(error < 2e-3);
+            assert!(error < 3e-3);
         }
     }
 }
