@@ -143,7 +143,7 @@ pub const SCATTER_FAULTS: &[(&str, Fault, &str)] = &[
         Shader(
             "lib/light_ray.wgsl",
             "k > ray.whole || depth > frame.scattering_depth",
-            "k > ray.whole || depth > 1.0",
+            "k > ray.whole || depth > 0.05",
         ),
         MARCH,
     ),

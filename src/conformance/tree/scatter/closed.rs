@@ -83,7 +83,7 @@ fn furnace(bed: &mut TestBed) -> Result<Measurement, Stop> {
     )
 }
 
-/// Some optical depths of ten: one path in a hundred is scattered more than 64 times, none so often that it ends by chance.
+/// Optical depths of some ten: one path in a hundred is scattered more than 64 times, none so often that it ends by chance.
 fn deep(bed: &mut TestBed) -> Result<Measurement, Stop> {
     let density = 3.0;
     in_white_sky(
