@@ -100,7 +100,6 @@ fn what_paths_do_not_go_with_is_refused_by_name() {
         ("--color-space display", "linear light"),
         ("--labels l8.nrrd --iso 0.5", "a path-traced surface"),
         ("--with l10.nrrd", "labels on one grid"),
-        ("--opacity-from l10.nrrd", "labels on one grid"),
         (
             "--preset boundaries --gradient-filter sobel",
             "central differences",

@@ -39,7 +39,7 @@ use crate::gpu;
 use crate::resident::TextureLayout;
 use crate::shaders::{Frame, FrameFields, MAJORANT_BINS, MAJORANT_ROWS, MAX_LIGHTS};
 pub use crate::transfer::Phase;
-use crate::transfer::{Absorption, TransferFunction};
+use crate::transfer::{Absorption, GradientTransfer, TransferFunction};
 use glam::DVec3;
 use majorants::{AmountPoints, Majorants};
 
@@ -197,8 +197,8 @@ const TURNS_OF_MASK: u32 = 10;
 /// Of one collision: the taps of a gradient, and a cube root.
 const TURNS_OF_TAPS: u32 = 7;
 const TURNS_OF_ROOT: u32 = 5;
-/// Of an event where gradients are asked: their taps, those of a second derivative, and shares; and of each widget.
-const TURNS_OF_GRADIENT: u32 = TURNS_OF_TAPS + 28 + 8;
+/// Of an event where second derivatives are asked.
+const TURNS_OF_SECOND: u32 = 28;
 /// Of an event, and of a collision, with several volumes: whether there is data, values, materials; shares and the taps of a label.
 const TURNS_OF_CHANNELS: u32 = 3 * 5;
 const TURNS_OF_CHANNEL_MET: u32 = 5 * 5 + 15;
@@ -279,13 +279,16 @@ impl PathTracing {
             let there = parts.iter().filter(|(is_there, _)| *is_there);
             there.map(|(_, turns)| turns).sum()
         };
-        let widgets = function.gradient_transfer.as_ref();
-        let widgets = widgets.map_or(0, |g| (g.share.len() + g.widgets.len()) as u32);
-        let uses_gradient = function.uses_gradient();
+        let gradients = function.gradient_transfer.as_ref();
+        let widgets = gradients.map_or(0, |g| 2 + (g.share.len() + g.widgets.len()) as u32);
+        let uses_gradient = gradients.is_some();
+        let uses_second = gradients.is_some_and(GradientTransfer::needs_second);
         let are_several = beside.is_some();
         let event = sum(&[
-            (uses_gradient, TURNS_OF_GRADIENT + widgets),
-            (uses_gradient && has_holes, 33 * TURNS_OF_MASK),
+            (uses_gradient, TURNS_OF_TAPS + widgets),
+            (uses_second, TURNS_OF_SECOND),
+            (uses_gradient && has_holes, 6 * TURNS_OF_MASK),
+            (uses_second && has_holes, 19 * TURNS_OF_MASK),
             (are_several, TURNS_OF_CHANNELS),
             (are_several && has_holes, 8 * TURNS_OF_MASK),
             (are_several && is_searched, 8 * points),
