@@ -139,15 +139,6 @@ pub const SCATTER_FAULTS: &[(&str, Fault, &str)] = &[
         SKY,
     ),
     (
-        "light that little is left of is not followed to its end",
-        Shader(
-            "lib/light_ray.wgsl",
-            "k > ray.whole || depth > frame.scattering_depth",
-            "k > ray.whole || depth > 0.05",
-        ),
-        MARCH,
-    ),
-    (
         "the number of a path stands in the place of that of its pixel",
         Shader("pathtrace.wgsl", "key.y = sample;", "key.x = sample;"),
         ISOTROPIC,
