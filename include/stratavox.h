@@ -111,7 +111,7 @@ enum sv_technique
     SV_TECHNIQUE_SHEAR_WARP = 3,
     // Every voxel is a Gaussian, of which rays take the integral.
     SV_TECHNIQUE_SPLAT = 4,
-    // Random paths of light that scatters. Not in a host's frames.
+    // Random paths of light that scatters: each frame has more of them.
     SV_TECHNIQUE_PATHTRACE = 5,
 };
 #ifndef __cplusplus
@@ -152,6 +152,27 @@ enum sv_mode
 typedef enum sv_mode sv_mode;
 #else
 typedef uint32_t sv_mode;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// How light comes to matter that scatters it once on its way to the eye.
+enum sv_scattering
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // It scatters none: matter shines in its colours.
+    SV_SCATTERING_NONE = 0,
+    // Lights are followed from each sample on.
+    SV_SCATTERING_MARCH = 1,
+    // Nothing is in the way of lights.
+    SV_SCATTERING_OPEN = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum sv_scattering sv_scattering;
+#else
+typedef uint32_t sv_scattering;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
@@ -834,8 +855,12 @@ typedef struct sv_settings {
     uint32_t jitter_frame;
     // SV_TECHNIQUE_SHEAR_WARP: rays a voxel along each side of the plane. 0 is 1; less than 0: as fine as the picture.
     double rays_per_voxel;
-    // SV_TECHNIQUE_PATHTRACE: what it traces, under `lights`; or NULL.
+    // SV_TECHNIQUE_PATHTRACE: what it traces, under `lights`; or NULL. Matter and lights of `scattering` too.
     const struct sv_path_tracing *paths;
+    // sv_scattering, of composites by rays.
+    uint32_t scattering;
+    // 0.
+    uint32_t reserved;
 } sv_settings;
 
 // What is drawn over a picture, and what is known of the volume in it.

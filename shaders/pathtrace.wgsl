@@ -19,10 +19,7 @@
 #import drawn_tile
 #import filter_{filter}
 #import mask
-#import holes_{holes}
-#import transfer_{transfer}
-#import medium
-#import gradient_central
+#import matter_{found}
 #import distance_map
 #import majorants
 #import random
@@ -139,17 +136,12 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
         if is_tentative {
             layers = with_sample(layers);
         }
-        if is_tentative && volume_is_valid(footprint_of(place)) {
-            let value = volume_value(place);
-            let matter = classify(value);
-            var extinctions = vec3(matter.extinction);
-            if frame.extinction_is_colored != 0u {
-                extinctions = extinctions_at(value);
-            }
-            chances = min(extinctions * frame.path_density / walk.majorant, vec3(1.0));
+        if is_tentative && is_matter(place) {
+            let matter = matter_at(place);
+            chances = min(matter.extinctions * frame.path_density / walk.majorant, vec3(1.0));
             color = matter.color;
             if frame.emission_point_count != 0u && state == PATH {
-                let light = path.weight * emission_at(value) / walk.majorant;
+                let light = path.weight * matter.emission / walk.majorant;
                 path.radiance += light;
                 layers = with_light(layers, light, path.bounces);
             }
@@ -202,7 +194,7 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
                     at.place += LEAVES_BY * frame.smallest_spacing * at.normal;
                     at.rank = walk.levels.before;
                 } else {
-                    at.normal = normal_at(place, at.direction, numbers.x);
+                    at.normal = normal_at(place, at.direction, vec2(numbers.x, u.z));
                 }
                 at.albedo = color * frame.path_albedo;
             }
@@ -331,13 +323,13 @@ fn of_colors(chances: vec3<f32>, chance: f32) -> vec3<f32> {
 }
 
 // The normal of a surface at a collision, on the side that the path comes from; 0: it is one in the medium.
-fn normal_at(place: vec3<f32>, direction: vec3<f32>, u: f32) -> vec3<f32> {
+fn normal_at(place: vec3<f32>, direction: vec3<f32>, u: vec2<f32>) -> vec3<f32> {
     if frame.path_surface == 0.0 {
         return vec3(0.0);
     }
-    let gradient = gradient_of(central_slope(place));
+    let gradient = gradient_met(place, u.y);
     let steepness = sqrt(dot(gradient, gradient));
-    if steepness <= frame.flat_gradient || u >= 1.0 - exp(-frame.path_surface * steepness) {
+    if steepness <= frame.flat_gradient || u.x >= 1.0 - exp(-frame.path_surface * steepness) {
         return vec3(0.0);
     }
     return facing(gradient, direction);

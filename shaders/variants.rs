@@ -42,7 +42,7 @@ impl Slot {
 pub const CONSTANTS: &[&str] = &[
     "software", "filter", "holes", "lattice", "cuts", "transfer", "end", "mode", "kernel",
     "operator", "blend", "output", "topology", "layers", "sheets", "take", "grids", "light",
-    "space", "matter", "levels",
+    "space", "matter", "levels", "found",
 ];
 
 /// The name of an import with its slots filled. `{slot=word}` has that word where an entry has no such slot.
@@ -121,6 +121,7 @@ pub const SILENT: &[&str] = &[
     "texels",
     "light_unhindered",
     "no_levels",
+    "by_value",
 ];
 /// Who reads the parameters of slices: the fragments, or the vertices for them (`flat_varyings.rs`).
 const PARAMETERS: Slot = slot("parameters", &["uniform", "planes", "stack"]);
@@ -148,6 +149,9 @@ const ONE: Slot = slot("inputs", &["scalar", "scalar_gradient"]);
 const LEAN: Slot = slot("inputs", &["shaded", "gradient_opacity"]);
 /// Whether paths meet surfaces of values.
 const LEVELS: Slot = constant("levels", &["no_levels", "levels"]);
+/// What collisions of paths find: by one value, by its gradient too, or by several values. The word `by_value` is left out of names.
+const FOUND: Slot = constant("found", &["by_value", "by_gradient", "by_channels"]);
+const FOUND_IN_ONE: Slot = constant("found", &["by_value", "by_gradient"]);
 /// Light that is scattered once.
 const SCATTERED: Slot = slot("inputs", &["scattered"]);
 const SCALAR: Slot = slot("inputs", &["scalar"]);
@@ -577,11 +581,11 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ("splat_points", &[TRANSFER]),
     (
         "pathtrace",
-        &[NARROW, HOLES, TRANSFER, TAPS, LEVELS, LAYERS],
+        &[NARROW, HOLES, TRANSFER, TAPS, FOUND, LEVELS, LAYERS],
     ),
     (
         "pathtrace",
-        &[CORNERS, HOLES, STORED, SHARED, LEVELS, LAYERS],
+        &[CORNERS, HOLES, STORED, SHARED, FOUND_IN_ONE, LEVELS, LAYERS],
     ),
     (
         "splat_points_projection",

@@ -8,7 +8,7 @@ use crate::camera::Camera;
 use crate::points::{PointField, Points};
 use crate::shaders::{Frame, MAX_CHANNELS};
 use crate::technique::mixture::opacities_have_colors;
-use crate::technique::pathtrace::Medium;
+use crate::technique::pathtrace::{Medium, most_extinction};
 use crate::technique::splat::points::reference_length;
 use crate::technique::{
     CutFaces, Error, GradientStorage, InPixel, Mode, Role, SampleInputs, Settings, View,
@@ -177,9 +177,12 @@ impl<'a> Scene<'a> {
         self.settings.check_splatted(are_several, is_classified)?;
         self.settings
             .check_points(matches!(self.beside, Beside::Points(_)))?;
-        let is_one =
-            self.mix() == SampleInputs::Scalar && !matches!(self.beside, Beside::Points(_));
-        self.settings.check_path_volume(is_one, 1)?;
+        let are_points = matches!(self.beside, Beside::Points(_));
+        let is_one = self.mix() == SampleInputs::Scalar && !are_points;
+        let are_numbers = self.mix() != SampleInputs::Colors && !are_points;
+        self.settings
+            .check_path_volume(are_numbers && !has_own_grids, 1)?;
+        self.settings.check_path_functions(&self.transfers())?;
         self.settings.check_scattering_volume(is_one, 1)?;
         self.settings.check_scattering_function(self.transfer)?;
         if self.uses_gradient() {
@@ -288,10 +291,15 @@ impl<'a> Scene<'a> {
         let medium = Medium {
             function,
             absorption: self.absorption(function),
-            has_holes: self.volume.validity.is_some(),
+            has_holes: self.volumes().iter().any(|v| v.validity.is_some()),
             is_searched: self.settings.conformance,
             value_range: self.volume.value_range,
             smallest_spacing: self.volume.grid().smallest_spacing(),
+            beside: (self.mix() == SampleInputs::Channels).then(|| {
+                let others = self.transfers().into_iter().skip(1).flatten();
+                let most = others.map(|f| most_extinction(f, self.absorption(f)));
+                most.sum()
+            }),
         };
         self.settings.path.fields_of(&medium).tell(frame);
     }

@@ -93,8 +93,8 @@ pub use volume::{
     sv_volume_record_upload_part, sv_volume_value_range,
 };
 pub use words::{
-    sv_camera_kind, sv_color_space, sv_filter, sv_lattice, sv_mode, sv_technique, sv_version,
-    sv_voxel_type,
+    sv_camera_kind, sv_color_space, sv_filter, sv_lattice, sv_mode, sv_scattering, sv_technique,
+    sv_version, sv_voxel_type,
 };
 
 /// The version of the library's interface: SV_ABI_VERSION of the header that it was built with. Threads: any.

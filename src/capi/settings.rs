@@ -3,7 +3,7 @@
 use super::paths::{paths, sv_path_tracing};
 use super::status::{Failure, number};
 use super::structure::{self, Versioned};
-use super::words::word;
+use super::words::{SCATTERINGS, word};
 use crate::color::ColorSpace;
 use crate::named::Named;
 use crate::shaders::{MAX_CLIP_PLANES, MAX_LEVELS, MAX_LIGHTS};
@@ -118,8 +118,12 @@ pub struct sv_settings {
     pub jitter_frame: u32,
     /// SV_TECHNIQUE_SHEAR_WARP: rays a voxel along each side of the plane. 0 is 1; less than 0: as fine as the picture.
     pub rays_per_voxel: f64,
-    /// SV_TECHNIQUE_PATHTRACE: what it traces, under `lights`; or NULL.
+    /// SV_TECHNIQUE_PATHTRACE: what it traces, under `lights`; or NULL. Matter and lights of `scattering` too.
     pub paths: *const sv_path_tracing,
+    /// sv_scattering, of composites by rays.
+    pub scattering: u32,
+    /// 0.
+    pub reserved: u32,
 }
 
 // SAFETY: as the trait wants it.
@@ -194,6 +198,7 @@ pub(super) unsafe fn settings(
             0 => None,
             _ => Some(shading(&c, lights.clone())?),
         },
+        single_scattering: word("sv_settings.scattering", &SCATTERINGS, c.scattering)?,
         // SAFETY: the caller's promise.
         path: unsafe { paths(c.paths, lights)? },
         per_mode: PerMode {

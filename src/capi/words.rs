@@ -1,6 +1,7 @@
 //! Numbers of C for words of the library. Structures hold them as `uint32_t`: any number may stand there.
 
 use super::status::Failure;
+use crate::technique::SingleScattering;
 use crate::volume::VoxelType;
 
 /// The rendering technique.
@@ -17,7 +18,7 @@ pub enum sv_technique {
     SV_TECHNIQUE_SHEAR_WARP = 3,
     /// Every voxel is a Gaussian, of which rays take the integral.
     SV_TECHNIQUE_SPLAT = 4,
-    /// Random paths of light that scatters. Not in a host's frames.
+    /// Random paths of light that scatters: each frame has more of them.
     SV_TECHNIQUE_PATHTRACE = 5,
 }
 
@@ -43,6 +44,18 @@ pub enum sv_mode {
     SV_MODE_ISO = 7,
     /// Emission and absorption in which a new maximum takes from what lies before it. Rays only.
     SV_MODE_MIDA = 8,
+}
+
+/// How light comes to matter that scatters it once on its way to the eye.
+#[repr(u32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum sv_scattering {
+    /// It scatters none: matter shines in its colours.
+    SV_SCATTERING_NONE = 0,
+    /// Lights are followed from each sample on.
+    SV_SCATTERING_MARCH = 1,
+    /// Nothing is in the way of lights.
+    SV_SCATTERING_OPEN = 2,
 }
 
 /// How a value between voxel centres is made.
@@ -143,6 +156,13 @@ pub(super) const VOXEL_TYPES: [VoxelType; 9] = [
     VoxelType::F16,
     VoxelType::F32,
     VoxelType::F64,
+];
+
+/// Light through a coarse grid is not followed in a host's frames.
+pub(super) const SCATTERINGS: [Option<SingleScattering>; 3] = [
+    None,
+    Some(SingleScattering::March),
+    Some(SingleScattering::Open),
 ];
 
 /// The word of a number.

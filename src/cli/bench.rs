@@ -202,6 +202,8 @@ impl Bench {
             first_frame_ms: frames[0].wall_ms,
             frames,
             samples: renderer.samples(&cameras[cameras.len() - 1])?,
+            samples_per_s: renderer.paths_per_s(),
+            collisions_per_sample: renderer.collisions_per_sample(&cameras[cameras.len() - 1])?,
             peak_rss_bytes: peak_rss_bytes(),
             device_bytes: renderer.device_bytes(),
             stages,

@@ -30,10 +30,12 @@ pub fn open_first(
     let source = open(&scene.input, limits)?;
     scene.take_first_variable(source.header(), progress);
     // Where no word names one the source is of the first in the file.
-    match (&scene.input.variable, source.header().variables.first()) {
-        (Some(taken), Some(opened)) if taken != opened => open(&scene.input, limits),
-        _ => Ok(source),
-    }
+    let source = match (&scene.input.variable, source.header().variables.first()) {
+        (Some(taken), Some(opened)) if taken != opened => open(&scene.input, limits)?,
+        _ => source,
+    };
+    scene.set_matter(source.header());
+    Ok(source)
 }
 
 /// The one volume of `source` that the words pick, and how much higher than it is it will be drawn.

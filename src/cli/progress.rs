@@ -38,6 +38,8 @@ struct Last {
     done: usize,
     of: usize,
     told: Instant,
+    /// Of a picture of paths, for a person: how many there are, how much noise, how long the rest takes.
+    paths: String,
 }
 
 /// Parts of a picture are told no more often.
@@ -83,6 +85,7 @@ impl Progress {
                 done: 0,
                 of: 0,
                 told: Instant::now(),
+                paths: String::new(),
             }),
         }
     }
@@ -124,6 +127,7 @@ impl Progress {
             done,
             of,
             told: Instant::now(),
+            paths: String::new(),
         };
         match &self.told {
             Told::Silent | Told::Kept(_) => {}
@@ -141,18 +145,41 @@ impl Progress {
         }
         last.told = Instant::now();
         let Last {
-            stage, done, of, ..
+            stage,
+            done,
+            of,
+            ref paths,
+            ..
         } = *last;
         let percent = (100.0 * part) as u32;
         match &self.told {
             Told::Silent | Told::Kept(_) => {}
             Told::Line(line) if of > 1 => {
-                line.set_message(format!("{stage} {done}/{of}, {percent} %"));
+                line.set_message(format!("{stage} {done}/{of}, {percent} %{paths}"));
             }
-            Told::Line(line) => line.set_message(format!("{stage} {percent} %")),
+            Told::Line(line) => line.set_message(format!("{stage} {percent} %{paths}")),
             Told::Json => say_json(
                 &serde_json::json!({ "stage": stage, "done": done, "of": of, "part": part }),
             ),
+        }
+    }
+
+    /// So many of so many paths a pixel are traced, with this noise left and so many seconds to go, where that is known.
+    pub fn paths(&self, [done, of]: [u32; 2], noise: Option<f64>, left: Option<f64>) {
+        let mut last = self.last();
+        match &self.told {
+            Told::Silent | Told::Kept(_) => {}
+            Told::Line(_) => {
+                let noise = noise.map_or(String::new(), |noise| {
+                    format!(", noise {:.1} %", 100.0 * noise)
+                });
+                let left = left.map(Duration::try_from_secs_f64).and_then(Result::ok);
+                let left = left.map_or(String::new(), |left| format!(", {} left", shown(left)));
+                last.paths = format!(": {done} of {of} paths{noise}{left}");
+            }
+            Told::Json => say_json(&serde_json::json!({
+                "stage": last.stage, "samples": done, "of_samples": of, "noise": noise, "seconds_left": left,
+            })),
         }
     }
 

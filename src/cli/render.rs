@@ -237,6 +237,13 @@ impl Render {
             camera, settings, ..
         } = view;
         renderer.watch(|part| progress.part(part));
+        renderer.watch_paths(|traced| {
+            progress.paths(
+                [traced.paths, settings.path.samples],
+                traced.noise,
+                traced.seconds_left(&settings.path),
+            );
+        });
         renderer.end_paths_by(gate);
         let base = shown.base(&scene, settings.mode)?;
         let frozen = |integrals| {
@@ -279,10 +286,8 @@ impl Render {
             last = Some(frame.picture);
         }
         let mut picture = last.expect("at least one picture is drawn");
-        if let Some(note) = renderer
-            .traced()
-            .and_then(|traced| said_of(traced, settings))
-        {
+        let traced = renderer.traced();
+        if let Some(note) = traced.and_then(|traced| said_of(traced, settings)) {
             progress.note(&note);
         }
         let start = Instant::now();
@@ -371,6 +376,8 @@ impl Render {
                 first_frame_ms: frames.first().map_or(0.0, |frame| frame.wall_ms),
                 frames,
                 samples: renderer.samples(camera)?,
+                samples_per_s: renderer.paths_per_s(),
+                collisions_per_sample: renderer.collisions_per_sample(camera)?,
                 peak_rss_bytes: peak_rss_bytes(),
                 device_bytes: renderer.device_bytes(),
                 stages,

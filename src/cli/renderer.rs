@@ -91,6 +91,8 @@ pub struct Frame {
 /// The middle of a picture is one pixel of a view that is so much narrower, with so many paths.
 const MIDDLE_ZOOM: f64 = 1e3;
 const MIDDLE_PATHS: u32 = 64;
+/// Paths a pixel that are traced once more to count what they meet.
+const COUNTED_PATHS: u32 = 2;
 
 /// The word of `--device` for the CPU references.
 pub const REFERENCE: &str = "reference";
@@ -278,6 +280,52 @@ impl<'a> Renderer<'a> {
         if let Some(renderer) = &mut self.on_device {
             renderer.watch(watch);
         }
+    }
+
+    /// From here on `watch` is told what has been traced of a picture of paths; of the CPU references nothing.
+    pub fn watch_paths(&mut self, watch: impl FnMut(Traced) + Send + 'a) {
+        if let Some(renderer) = &mut self.on_device {
+            renderer.watch_paths(watch);
+        }
+    }
+
+    /// Paths a second of the last picture; `None` of other techniques.
+    pub fn paths_per_s(&self) -> Option<f64> {
+        let [width, height] = self.job.extent_pixels.map(f64::from);
+        let rate = |traced: Traced| {
+            width * height * f64::from(traced.paths - traced.begun) / traced.seconds
+        };
+        self.traced().map(rate)
+    }
+
+    /// Tentative collisions of a path and of its shadow rays, the mean over the picture of this camera, of a few paths more that are
+    /// traced for it; `None` of other techniques.
+    pub fn collisions_per_sample(&mut self, camera: &Camera) -> Result<Option<f64>, Error> {
+        let settings = self.job.settings;
+        if !settings.technique.traces_paths() {
+            return Ok(None);
+        }
+        let settings = &Settings {
+            path: PathTracing {
+                samples: COUNTED_PATHS,
+                noise: None,
+                seconds: None,
+                denoise: false,
+                ..settings.path.clone()
+            },
+            ..settings.clone()
+        };
+        let scene = Scene {
+            settings,
+            ..self.job.scene(camera)
+        };
+        let Some(renderer) = &mut self.on_device else {
+            return Ok(None);
+        };
+        let picture = renderer.render(&scene, &[LayerKind::Samples])?.picture;
+        let counts = picture.layers.iter().flat_map(|layer| &layer.values);
+        let sum: f64 = counts.map(|&count| f64::from(count)).sum();
+        Ok(Some(sum / picture.pixels.len() as f64))
     }
 
     /// From here on the first interrupt ends a picture of paths early; one of the CPU references it stops.

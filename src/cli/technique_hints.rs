@@ -47,9 +47,15 @@ fn of_range(name: &str) -> &'static str {
 fn of_refusal(wanted: &str, of: &str) -> &'static str {
     match (wanted, of) {
         ("a lens", _) => "--projection perspective, or leave out --aperture-radius",
-        ("path tracing", "one volume of numbers") => {
-            "draw one number a voxel: --component 0, without --with, --labels, --channel, --opacity-from and functions of \
-             gradients; --technique raycast draws them"
+        ("path tracing", "volumes of numbers and labels on one grid") => {
+            "draw one number a voxel: --component 0, and volumes on the grid of the first; --technique raycast draws all"
+        }
+        ("path tracing", "central differences") => "leave out --gradient-filter and --gradients",
+        ("a path-traced surface of values", _) => {
+            "draw one volume: without --with, --labels, --channel and --opacity-from, or leave out --iso"
+        }
+        ("a function with extinction, albedo, emission or phase", _) => {
+            "draw one volume, or by a function of colours and opacities"
         }
         ("path tracing", _) => "--technique raycast draws a volume in bricks",
         ("single scattering", "one volume of numbers") => {

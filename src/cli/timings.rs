@@ -26,8 +26,12 @@ pub struct Timings {
     pub first_frame_ms: f64,
     /// Each picture, in order.
     pub frames: Vec<FrameTime>,
-    /// Samples that the last picture took.
+    /// Samples that the last picture took; paths of --technique pathtrace.
     pub samples: u64,
+    /// Paths a second that were traced for the last picture; `null` for other techniques.
+    pub samples_per_s: Option<f64>,
+    /// Tentative collisions of a path and its shadow rays, of two more paths a pixel; `null` for other techniques.
+    pub collisions_per_sample: Option<f64>,
     /// The most memory that the process had.
     pub peak_rss_bytes: Option<u64>,
     /// Device memory.
@@ -253,6 +257,8 @@ mod tests {
             "first_frame_ms",
             "frames",
             "samples",
+            "samples_per_s",
+            "collisions_per_sample",
             "peak_rss_bytes",
             "device_bytes",
             "read_ms",

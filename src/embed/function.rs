@@ -52,6 +52,8 @@ impl Function {
         // Functions that weigh by gradients may be followed by others that do more.
         let mix = SampleInputs::of_one(function).general();
         check(mix, settings)?;
+        settings.check_scattering_volume(!mix.uses_gradient(), 1)?;
+        settings.check_scattering_function(function)?;
         volume.check(gpu, settings)?;
         let spacing = volume.grid().smallest_spacing();
         let made = function.map(|function| {
@@ -62,7 +64,10 @@ impl Function {
                 false => GpuTransfer::absorbing(gpu, &absorbing, space),
             }
         });
-        let mut skippable = settings.skippable(mix, function, volume.value_range(), None);
+        let lit = function.filter(|f| f.emits() && settings.scatters());
+        let lit = lit.map(TransferFunction::with_emission_seen);
+        let seen = lit.as_ref().or(function);
+        let mut skippable = settings.skippable(mix, seen, volume.value_range(), None);
         let mut empty = None;
         match (volume.cells(), &skippable, emptying) {
             (Some(cells), Skippable::Unseen(seen), Some(pipeline)) => {

@@ -100,6 +100,7 @@ impl OfPaths {
             is_searched: settings.conformance,
             value_range: volume.value_range(),
             smallest_spacing,
+            beside: None,
         });
         let function = function.clone();
         Some(Box::new(Self { function, fields }))

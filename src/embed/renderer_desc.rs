@@ -127,13 +127,8 @@ impl RendererDesc {
                 "the host draws the sky, and all is sharp",
             ),
             (
-                settings.single_scattering.is_some(),
-                "single scattering",
-                "draw its picture by `offscreen::Renderer`",
-            ),
-            (
                 settings.wants_light_volume(),
-                "a picture with a light volume (shadows, ambient occlusion)",
+                "a picture with a light volume (shadows, ambient occlusion, light that scatters once out of a grid or a sky)",
                 "take `technique::LightVolume` and record it",
             ),
             (

@@ -28,7 +28,7 @@ pub use height::{falls_with_height, mean_at_a_third};
 pub use light::{LIGHT, MATERIAL, Origin, STILL_SAMPLES, half_gradient, is_lit, light, may_choose};
 pub use side::{SIDES, best_side, face};
 pub use surface::summary_at;
-pub use values::{context, first_variable, summary};
+pub use values::{context, first_variable, is_cloud, summary};
 pub use work::{MOST_SAMPLES, samples};
 
 /// What lies behind pictures that people look at: sRGB and opacity, `#18181c`.

@@ -15,7 +15,31 @@ pub fn context(header: &Header) -> Context {
             header.stored,
             VoxelType::F16 | VoxelType::F32 | VoxelType::F64
         ),
+        is_cloud: false,
     }
+}
+
+/// Whether values are amounts of the water and ice of clouds, or how much of the air they fill: by the standard name or the
+/// description.
+pub fn is_cloud(header: &Header) -> bool {
+    let said = header.standard_name.iter().chain(&header.long_name);
+    let names_clouds = said
+        .into_iter()
+        .any(|text| text.to_lowercase().contains("cloud"));
+    let amounts = [
+        "kg kg-1",
+        "kg/kg",
+        "kg kg**-1",
+        "g kg-1",
+        "g/kg",
+        "kg m-3",
+        "g m-3",
+        "1",
+        "%",
+        "(0 - 1)",
+    ];
+    let unit = header.unit.as_deref().unwrap_or("1").trim();
+    names_clouds && header.dims[2] > 1 && amounts.contains(&unit)
 }
 
 /// What the values of a volume look like as a whole. Looks at millions of voxels, so each type has a loop of its own.

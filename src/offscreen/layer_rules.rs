@@ -45,8 +45,11 @@ pub fn has_labels(scene: &Scene) -> bool {
 
 /// True where the hit is one of the scene's volume, and its voxels are here.
 pub fn has_normals(scene: &Scene) -> bool {
-    let is_of_one = scene.mix().is_of_one() || scene.settings.mode == Mode::Iso;
-    is_of_one && !scene.volume.is_outline()
+    let settings = scene.settings;
+    let is_of_one = scene.mix().is_of_one() || settings.mode == Mode::Iso;
+    // A path meets one of several.
+    let has_one = is_of_one || settings.technique.traces_paths();
+    has_one && !scene.volume.is_outline()
 }
 
 /// The mean of pictures, added up in f32 in the order of their rays: no device needs to blend for it.

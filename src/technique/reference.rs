@@ -6,6 +6,7 @@
 
 use super::blend::{Fragment, clear_color, merge};
 use super::composite::Composite;
+use super::gradient::gradient_of;
 use super::isosurface::Surfaces;
 use super::merge::MAX_BATCH_SLICES;
 use super::pathtrace::{PathMeans, numbers_of};
@@ -49,6 +50,11 @@ pub trait Samples<R: Real> {
     }
     /// Colour and extinction of what is there, lit.
     fn material(&self, p: [R; 3], ray_direction: [R; 3]) -> Option<[R; 4]>;
+    /// The gradient of the matter that a collision at `p` is with, in units of the first volume: of several volumes that which `part`,
+    /// 0 to 1, finds by the shares that they have of the extinction. 0 for no data.
+    fn gradient_met(&self, p: [R; 3], _part: R) -> [R; 3] {
+        gradient_of(self.frame(), |step| self.value(moved(p, step)))
+    }
     /// The same of the voxels of one slice across an axis.
     fn material_in_slice(
         &self,

@@ -22,6 +22,8 @@ pub struct Context {
     pub is_patient: bool,
     /// Stored numbers are whole.
     pub is_integer: bool,
+    /// Water and ice of clouds, in a picture of light that scatters: white, whatever the unit says.
+    pub is_cloud: bool,
 }
 
 /// What a context and values together are taken for.
@@ -56,6 +58,11 @@ const QUIET: f64 = 0.8;
 const LEAST_QUIET: f64 = 0.02;
 /// Kelvins that nothing in the air or the sea is colder than.
 const COLDEST: f64 = 100.0;
+/// The optical depth of the densest cloud along the diagonal.
+const CLOUD_DEPTH: f64 = 800.0;
+const CLOUD_POINTS: usize = 8;
+/// Less than this part of the densest is clear air.
+const CLEAR: f64 = 0.01;
 /// Control points of a field's colours.
 const FIELD_POINTS: usize = 64;
 
@@ -128,6 +135,13 @@ pub fn automatic_in(
         return automatic(summary, classified, window);
     }
     let choice = context.choice(summary);
+    if context.is_cloud {
+        let function = cloud(summary);
+        return match window {
+            Some(window) => function.spread_over(window),
+            None => function,
+        };
+    }
     let function = match choice.kind {
         Kind::Labels => labels(summary),
         Kind::Ct => offset_ct(summary, choice.offset),
@@ -252,6 +266,32 @@ fn field(summary: &ValueSummary) -> TransferFunction {
             .flat_map(sheet)
             .map(|(value, opacity)| OpacityPoint { value, opacity })
             .collect(),
+        reference_length: reference_length(summary),
+        interpolation: Interpolation::Linear,
+        gradient_transfer: None,
+        medium: None,
+    }
+}
+
+/// White matter whose extinction grows in proportion to the value, as that of droplets of one size does; none where there is next to
+/// none of it, so that haze, and the first entry of a table, are clear air.
+fn cloud(summary: &ValueSummary) -> TransferFunction {
+    let most = summary.range[1].max(f64::MIN_POSITIVE);
+    // Opacities between points are less than those of the proportion by 1 % of it at most.
+    let opacity = (0..=CLOUD_POINTS).map(|i| {
+        let part = (i as f64 / CLOUD_POINTS as f64).max(CLEAR);
+        let depth = CLOUD_DEPTH / 512.0 * if i == 0 { 0.0 } else { part };
+        OpacityPoint {
+            value: part * most,
+            opacity: -(-depth).exp_m1(),
+        }
+    });
+    TransferFunction {
+        color: vec![ColorPoint {
+            value: 0.0,
+            srgb: [1.0; 3],
+        }],
+        opacity: opacity.collect(),
         reference_length: reference_length(summary),
         interpolation: Interpolation::Linear,
         gradient_transfer: None,

@@ -24,6 +24,7 @@ mod file_images;
 mod file_medium;
 #[cfg(feature = "json")]
 mod file_widgets;
+mod gradient_most;
 mod gradient_transfer;
 mod homogeneous_ranges;
 #[cfg(all(feature = "json", feature = "files"))]

@@ -81,9 +81,13 @@ fn flags_win_over_the_look_and_change_the_picture() {
 #[test]
 fn what_paths_do_not_go_with_is_refused_by_name() {
     let folder = Folder::new();
-    folder
-        .run("convert phantom:sphere,n=8 -o l.nrrd --type u8 --window 0,1")
-        .assert_done();
+    for n in [8, 10] {
+        folder
+            .run(&format!(
+                "convert phantom:sphere,n={n} -o l{n}.nrrd --type u8 --window 0,1"
+            ))
+            .assert_done();
+    }
     for (words, said) in [
         ("--mode mip", "mode mip"),
         ("--filter cubic", "the filter cubic"),
@@ -94,9 +98,12 @@ fn what_paths_do_not_go_with_is_refused_by_name() {
         ("--preintegrated", "pre-integrated"),
         ("--adaptive-steps 0.01", "adaptive"),
         ("--color-space display", "linear light"),
-        ("--labels l.nrrd", "one volume of numbers"),
-        ("--with l.nrrd", "one volume of numbers"),
-        ("--opacity-from l.nrrd", "one volume of numbers"),
+        ("--labels l8.nrrd --iso 0.5", "a path-traced surface"),
+        ("--with l10.nrrd", "labels on one grid"),
+        (
+            "--preset boundaries --gradient-filter sobel",
+            "central differences",
+        ),
         ("--crop 0,4,0,8,0,8 --cut-faces", "cut faces"),
         ("--flow stream --aa 1", "--flow"),
         ("--phase mie", "hg:G"),
@@ -245,7 +252,7 @@ fn films_have_layers_of_paths() {
         .assert_done();
     folder
         .run(&format!(
-            "render {of} {layers} --azimuth 450 --elevation 0 -o a.npy"
+            "render {of} {layers} --azimuth 450 --elevation 0 --seed 3 -o a.npy"
         ))
         .assert_done();
     for layer in [
@@ -268,6 +275,9 @@ fn the_samples_of_paths_are_their_number() {
         .assert_done();
     let text = fs::read_to_string(folder.path("t.json")).expect("timings");
     assert!(text.contains("\"samples\": 1440"), "{text}");
+    for key in ["samples_per_s", "collisions_per_sample"] {
+        assert!(!text.contains(&format!("\"{key}\": null")), "{text}");
+    }
     let ran = folder.run(&format!("bench {words} --repeat 1 --json b.json"));
     ran.assert_done();
     let ran = folder.run(&format!("animate {words} --turntable 2 -o f.gif"));
@@ -291,6 +301,72 @@ fn pictures_that_end_by_themselves_say_how_many_paths_they_have() {
     let ran = folder.run(&format!("{words} --spp 4"));
     ran.assert_done();
     assert!(!ran.err.contains("paths a pixel"), "{}", ran.err);
+}
+
+/// How many paths there are, how much noise and how long the rest takes.
+#[test]
+fn programs_are_told_how_far_paths_are() {
+    let folder = Folder::new();
+    let words = "render phantom:head,n=24 --technique pathtrace --size 24x20 -o a.png";
+    let ran = folder.run(&format!("{words} --spp 12 --progress json"));
+    ran.assert_done();
+    let told: Vec<serde_json::Value> = ran
+        .err
+        .lines()
+        .filter_map(|line| serde_json::from_str(line).ok())
+        .filter(|line: &serde_json::Value| line.get("samples").is_some())
+        .collect();
+    let samples: Vec<_> = told.iter().map(|line| line["samples"].as_u64()).collect();
+    assert_eq!(samples, [2, 4, 6, 8, 12].map(Some), "{}", ran.err);
+    assert!(told[0]["noise"].is_null() && told[1]["noise"].as_f64() > Some(0.0));
+    assert!(told[0]["seconds_left"].as_f64() > Some(0.0));
+    assert_eq!(told[4]["seconds_left"].as_f64(), Some(0.0));
+}
+
+/// Functions of gradients, labels and volumes beside: the picture is another one than without.
+#[test]
+fn paths_go_through_functions_of_gradients_and_several_volumes() {
+    let folder = Folder::new();
+    folder
+        .run("convert phantom:sphere,n=24 -o other.nrrd --type u8 --window 0,1")
+        .assert_done();
+    let mut seen = Vec::new();
+    for words in [
+        "",
+        "--preset boundaries",
+        "--with other.nrrd,color=red,window=0:255",
+        "--labels other.nrrd",
+        "--opacity-from other.nrrd",
+    ] {
+        let ran = folder.run(&format!(
+            "render phantom:sphere,n=24,type=f32 --look cinematic {words} -o a.png {SMALL}"
+        ));
+        ran.assert_done();
+        let bytes = fs::read(folder.path("a.png")).expect("a picture");
+        assert!(!seen.contains(&bytes), "{words} changes nothing");
+        seen.push(bytes);
+    }
+}
+
+/// Water and ice of clouds are white, scatter forward and have no surfaces; flags win.
+#[test]
+fn clouds_are_white_under_the_cinematic_look() {
+    let folder = Folder::new();
+    let scene = |words: &str| -> serde_json::Value {
+        let ran = folder.run(&format!(
+            "render phantom:storm,n=16 --time 4 --look cinematic {words} -o a.png --save-scene s.json {SMALL}"
+        ));
+        ran.assert_done();
+        let text = fs::read_to_string(folder.path("s.json")).expect("a scene");
+        serde_json::from_str(&text).expect("JSON")
+    };
+    let cloud = scene("").to_string();
+    for word in ["hg:0.85", "0.999"] {
+        assert!(cloud.contains(word), "{word}: {cloud}");
+    }
+    assert!(scene("--phase rayleigh").to_string().contains("rayleigh"));
+    let wind = scene("--variable w").to_string();
+    assert!(!wind.contains("hg:0.85"), "{wind}");
 }
 
 /// PNG goes through a tone curve; numbers of light do not.

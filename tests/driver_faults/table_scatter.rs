@@ -9,6 +9,9 @@ const NO_BOUNCE: &str = "reference.pathtrace.composite.no_bounce.linear_fetch.pe
 const SKY: &str = "reference.pathtrace.composite.sky.linear_fetch.perspective";
 const LAMPS: &str = "reference.pathtrace.composite.lamps.linear_fetch.perspective";
 const MEDIUM: &str = "reference.pathtrace.composite.medium.linear_fetch.perspective";
+const CUT: &str = "reference.pathtrace.composite.cut.linear_fetch.perspective";
+const STEEP: &str = "reference.pathtrace.composite.steep.linear_fetch.perspective";
+const DEEP: &str = "pathtrace.composite.deep.linear_fetch.f32.perspective";
 const PLANE: &str = "pathtrace.composite.plane.linear_fetch.f32.perspective";
 const CELLS: &str = "pathtrace.composite.cells.linear_fetch.f32.orthographic";
 const OPEN: &str = "reference.raycast.ray.composite.scattered_open.linear_fetch.perspective";
@@ -116,5 +119,64 @@ pub const SCATTER_FAULTS: &[(&str, Fault, &str)] = &[
             "return 1.0 / dot(to_light, to_light);",
         ),
         POINT,
+    ),
+    (
+        "light is scattered 64 times at most",
+        Shader(
+            "pathtrace.wgsl",
+            "path.bounces == frame.path_bounces;",
+            "path.bounces == min(frame.path_bounces, 64u);",
+        ),
+        DEEP,
+    ),
+    (
+        "directions to a sky are as dense at its poles as between them",
+        Shader(
+            "lib/sky.wgsl",
+            "let z = above + numbers.z * (below - above);",
+            "let z = turned(0.5 * (row + numbers.z) / f32(size.y)).x;",
+        ),
+        SKY,
+    ),
+    (
+        "the number of a path stands in the place of that of its pixel",
+        Shader("pathtrace.wgsl", "key.y = sample;", "key.x = sample;"),
+        ISOTROPIC,
+    ),
+    (
+        "random numbers reach beyond 1",
+        Shader(
+            "lib/random.wgsl",
+            "* (1.0 / 16777216.0)",
+            "* (1.0 / 16700000.0)",
+        ),
+        ISOTROPIC,
+    ),
+    (
+        "extinctions are those of a voxel, not of a length",
+        Shader(
+            "pathtrace.wgsl",
+            "matter.extinctions * frame.path_density",
+            "matter.extinctions * frame.path_density / frame.smallest_spacing",
+        ),
+        NO_BOUNCE,
+    ),
+    (
+        "no light comes through what is cut away",
+        Shader(
+            "pathtrace.wgsl",
+            "walk.end = min(walk.end, at.reach);",
+            "walk.end = min(walk.end, at.reach); if frame.clip_plane_count != 0u { at.light = vec3(0.0); }",
+        ),
+        CUT,
+    ),
+    (
+        "gradients say nothing of how opaque matter is to paths",
+        Shader(
+            "lib/matter_by_gradient.wgsl",
+            "norm(gradient), second)",
+            "0.0, second)",
+        ),
+        STEEP,
     ),
 ];

@@ -1,6 +1,7 @@
 //! What is drawn in all the ways of a host.
 
-use stratavox::technique::{Level, Mode, Order, Settings, Technique};
+use stratavox::technique::pathtrace::PathTracing;
+use stratavox::technique::{Level, Light, Mode, Order, Settings, SingleScattering, Technique};
 
 /// Every way into a host's frame.
 pub fn all_settings() -> Vec<Settings> {
@@ -51,12 +52,22 @@ pub fn all_settings() -> Vec<Settings> {
         shading: Some(shaded),
         ..Settings::default()
     };
+    let scattered = [SingleScattering::March, SingleScattering::Open].map(|scattering| Settings {
+        single_scattering: Some(scattering),
+        path: PathTracing {
+            lights: vec![Light::of_world(glam::dvec3(0.3, -0.5, 0.8), [1.0; 3])],
+            density: 0.5,
+            ..PathTracing::default()
+        },
+        ..Settings::default()
+    });
     let all = rays
         .into_iter()
         .chain(slices)
         .chain(front_to_back)
         .chain(filtered)
-        .chain([slabs, in_light]);
+        .chain([slabs, in_light])
+        .chain(scattered);
     all.map(|mut settings| {
         if settings.mode == Mode::Iso {
             settings.per_mode.levels = vec![Level {

@@ -95,8 +95,7 @@ fn settings(look: &Look) -> Option<Settings> {
     let is_possible = look.scatters
         && look.technique == Technique::Raycast
         && look.mode == Mode::Composite
-        && matches!(look.filter, Filter::Linear | Filter::Nearest)
-        && !look.samples.uses_gradient();
+        && matches!(look.filter, Filter::Linear | Filter::Nearest);
     let key = Light {
         towards: glam::dvec3(-0.54, 0.64, 0.54),
         space: LightSpace::Camera,

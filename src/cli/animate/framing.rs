@@ -26,7 +26,7 @@ use crate::{
     },
     look::{SHARE, corners, frames_the_box, small_of},
     picture::PictureFormat,
-    technique::{Jitter, Settings},
+    technique::{Jitter, Settings, pathtrace::PathTracing},
     volume::{Grid, Volume},
 };
 use glam::DVec3;
@@ -172,6 +172,10 @@ fn seen_alone(ready: Vec<Ready>, shots: &[FilmFrame]) -> Vec<Ready> {
             shading: None,
             ambient_occlusion: None,
             jitter: Jitter::default(),
+            path: PathTracing {
+                seed: 0,
+                ..shot.settings.path.clone()
+            },
             ..shot.settings.clone()
         },
         ..ready

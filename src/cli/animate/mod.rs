@@ -33,7 +33,7 @@ use super::{
     Error,
     annotation::annotation,
     exaggerate,
-    flags::{Depth, PictureFlags, SceneFlags, context},
+    flags::{Depth, PictureFlags, SceneFlags},
     flow,
     ground::Ground,
     load,
@@ -391,7 +391,7 @@ impl Animate {
         if self.show.show.is_some() && self.between.is_none() && header.times > 1 {
             film.between = FRAMES_SHOWN.div_ceil(header.times - 1);
         }
-        scene.classification.context = scene.is_auto().then(|| context(header));
+        scene.classification.context = scene.context(header);
         let mode = scene.sampling.mode.unwrap_or_default();
         if let Some(with_level) = scene_inputs::with_level(&scene, mode, source.as_ref(), progress)?
         {

@@ -194,6 +194,7 @@ impl Maker<'_> {
         let mut settings = self.scene.settings_of(&sampling, self.depth)?;
         // Grain that stood still would be seen as a curtain before the moving picture.
         settings.jitter.frame = k;
+        settings.path.seed = settings.path.seed.wrapping_add(k);
         if let Some(Keyframes { tracks, .. }) = &self.film.keyframes {
             tracks.light(&mut settings.shading, u)?;
         }

@@ -1,8 +1,12 @@
 //! `--look`: which defaults hold where no flag says otherwise.
 
+use super::paths::PhaseWord;
 use super::{EnvironmentWord, LightWord, SceneFlags, ToneWord};
 use crate::cli::progress::Progress;
+use crate::look::{context, is_cloud};
+use crate::technique::pathtrace::Phase;
 use crate::technique::{Mode, Technique};
+use crate::transfer::Context;
 use crate::volume::Header;
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
@@ -70,22 +74,66 @@ impl SceneFlags {
         let path = &mut self.path;
         path.environment
             .get_or_insert(EnvironmentWord::Even([SKY; 3]));
-        path.surface_scattering.get_or_insert(SURFACE);
         path.density_scale.get_or_insert(DENSITY);
         path.f0.get_or_insert(F0);
         path.roughness.get_or_insert(ROUGHNESS);
         self.picture.tone.get_or_insert(ToneWord::Neutral);
-        self.picture.exposure.get_or_insert(EXPOSURE);
         path.denoise_picture |= path.spp.is_none_or(|paths| paths >= LEAST_DENOISED);
         if !self.light.has_lights() {
             self.light
                 .light
                 .push(LightWord::of_camera(KEY_LIGHT.into()));
         }
-        self.light.light_size.get_or_insert(KEY_LIGHT_DEGREES);
     }
 }
 
+impl SceneFlags {
+    /// What the file says of its values, where the look may choose by it.
+    pub fn context(&self, header: &Header) -> Option<Context> {
+        self.is_auto().then(|| Context {
+            is_cloud: self.is_cinematic() && is_cloud(header),
+            ..context(header)
+        })
+    }
+
+    /// What `--look cinematic` takes this matter for: clouds scatter almost all light forward and have no surfaces.
+    pub fn set_matter(&mut self, header: &Header) {
+        if !self.is_cinematic() {
+            return;
+        }
+        let names_a_function = self.classification.names_a_function();
+        let path = &mut self.path;
+        let size = &mut self.light.light_size;
+        match is_cloud(header) && !names_a_function {
+            true => {
+                self.picture.exposure.get_or_insert(CLOUD_EXPOSURE);
+                size.get_or_insert(SUN_DEGREES);
+                path.albedo.get_or_insert(CLOUD_ALBEDO);
+                let phase = Phase::HenyeyGreenstein(CLOUD_COSINE);
+                path.phase.get_or_insert(PhaseWord(phase));
+                path.surface_scattering.get_or_insert(0.0);
+            }
+            false => {
+                size.get_or_insert(KEY_LIGHT_DEGREES);
+                path.surface_scattering.get_or_insert(SURFACE);
+                self.picture.exposure.get_or_insert(EXPOSURE);
+            }
+        }
+    }
+
+    fn is_cinematic(&self) -> bool {
+        self.look == Some(Look::Cinematic) && self.traces_paths()
+    }
+}
+
+/// Next to no light is lost in a cloud.
+const CLOUD_EXPOSURE: f64 = 0.5;
+/// Wider than the sun, so that few paths are enough.
+const SUN_DEGREES: f64 = 5.0;
+/// Droplets absorb next to nothing of visible light.
+const CLOUD_ALBEDO: f64 = 0.999;
+/// The mean cosine of what droplets far larger than the wavelength scatter.
+const CLOUD_COSINE: f64 = 0.85;
 /// Of `--look cinematic`: from 45 degrees left of the eye and 40 degrees above it.
 const KEY_LIGHT: [f64; 3] = [-0.54, 0.64, 0.54];
 const KEY_LIGHT_DEGREES: f64 = 40.0;

@@ -34,7 +34,7 @@ pub struct PathFlags {
     #[arg(long, value_name = "S", value_parser = positive, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seconds: Option<f64>,
-    /// Other numbers, other noise [default: 0]
+    /// Other numbers, other noise; frame k of a film has k more [default: 0]
     #[arg(long, value_name = "N", help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seed: Option<u32>,

@@ -2,9 +2,7 @@
 
 use super::{Other, Parts, Reader, SceneInputs, limits, says_nothing};
 use crate::cli::Error;
-use crate::cli::flags::{
-    Classification, ClassificationFlags, Component, SceneFlags, WindowWord, context,
-};
+use crate::cli::flags::{Classification, ClassificationFlags, Component, SceneFlags, WindowWord};
 use crate::cli::load::{load_from, open, open_first};
 use crate::cli::memory::DeviceRoom;
 use crate::cli::progress::Progress;
@@ -73,7 +71,7 @@ impl Reader<'_> {
         }
         let source = open(&scene.input, &scene.input.limits())?;
         let header = source.header();
-        scene.classification.context = scene.is_auto().then(|| context(header));
+        scene.classification.context = scene.context(header);
         let is_news = |what: &&String| !what.eq_ignore_ascii_case(&word.replace('_', " "));
         let what = header.long_name.as_ref().filter(is_news);
         let what = what.map_or(String::new(), |what| format!(", {what}"));

@@ -4,7 +4,7 @@ use super::{Others, SceneInputs, says_nothing};
 use crate::{
     cli::{
         Error,
-        flags::{Classification, ClassificationFlags, SceneFlags, context, summary},
+        flags::{Classification, ClassificationFlags, SceneFlags, summary},
         labels,
         load::load_from,
         memory::{DeviceRoom, Held, fitting},
@@ -28,7 +28,7 @@ impl Reader<'_> {
     pub fn one(&self, source: Box<dyn Source>) -> Result<SceneInputs, Error> {
         let header = source.header().clone();
         let is_labels = header.is_labels;
-        let context = self.scene.is_auto().then(|| context(&header));
+        let context = self.scene.context(&header);
         let (mut volume, height_factor) =
             load_from(source, self.scene, self.device, self.progress)?;
         let keeps_all = self.scene.keeps_all(self.mode) || volume.is_outline();

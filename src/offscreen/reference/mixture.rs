@@ -60,10 +60,7 @@ impl<R: Real> ReferenceRays<'_, R> {
             let own = place_in_channel(&self.frame, c, moved(place.p, step))?;
             filtered(volume, filter, own)
         };
-        let own_filter = |c: usize| match self.roles[c] {
-            Role::Labels => Filter::Nearest,
-            Role::Numbers | Role::Opacity | Role::Material => self.scene.settings.filter,
-        };
+        let own_filter = |c: usize| self.filter_of(c);
         let mut found = [None; crate::shaders::MAX_CHANNELS as usize];
         for (c, volume) in self.volumes.iter().enumerate() {
             found[c] = look(c, volume, own_filter(c), [0; 3]);
@@ -89,6 +86,47 @@ impl<R: Real> ReferenceRays<'_, R> {
             true => dimmed(material, R::from_f32(self.frame.dim)),
             false => material,
         })
+    }
+
+    /// The gradient of one of the channels on one grid, which `part`, 0 to 1, finds by their shares of the extinction: CPU reference of
+    /// `shaders/lib/matter_by_channels.wgsl`.
+    pub(super) fn gradient_of_channels(&self, p: [R; 3], part: R) -> [R; 3] {
+        let zero = R::from_f64(0.0);
+        let look = |c: usize, step| filtered(self.volumes[c], self.filter_of(c), moved(p, step));
+        let values: Vec<_> = (0..self.volumes.len()).map(|c| look(c, [0; 3])).collect();
+        let shares = std::cell::RefCell::new(Vec::new());
+        let classify = |c, value| self.classified(c, value);
+        material_of(&self.roles, &values, classify, |c, value, material| {
+            shares.borrow_mut().push((c, value, material[3]));
+            material
+        });
+        let shares = shares.into_inner();
+        let sum = shares.iter().fold(zero, |sum, share| sum + share.2);
+        let mut left = part * sum;
+        let mut met = None;
+        for &(c, value, own) in &shares {
+            if own > zero && left >= zero {
+                met = Some((c, value));
+            }
+            left = left - own;
+        }
+        let Some((c, value)) = met else {
+            return [zero; 3];
+        };
+        match self.roles[c] {
+            Role::Labels => label_gradient(&self.frame, c, value, |step| look(c, step)),
+            Role::Numbers | Role::Opacity | Role::Material => {
+                channel_gradient(&self.frame, c, |step| look(c, step))
+            }
+        }
+    }
+
+    /// Nothing lies between two labels.
+    fn filter_of(&self, channel: usize) -> Filter {
+        match self.roles[channel] {
+            Role::Labels => Filter::Nearest,
+            Role::Numbers | Role::Opacity | Role::Material => self.scene.settings.filter,
+        }
     }
 
     /// A material with the light that falls on it.

@@ -5,6 +5,7 @@ use crate::ray::before_depth;
 use crate::real::Real;
 use crate::scene::Beside;
 use crate::shaders::Frame;
+use crate::technique::gradient::gradient_of;
 use crate::technique::reference::{Samples, moved};
 use crate::technique::splat::ViewPoints;
 use crate::technique::{AlikeCells, Filter, Settings};
@@ -82,6 +83,13 @@ impl<R: Real> Samples<R> for ReferenceRays<'_, R> {
         }
         let look = |volume: &_, filter, step| filtered(volume, filter, moved(p, step));
         self.mixed(look, p, ray_direction)
+    }
+
+    fn gradient_met(&self, p: [R; 3], part: R) -> [R; 3] {
+        match self.scene.beside {
+            Beside::Channels(_) => self.gradient_of_channels(p, part),
+            _ => gradient_of(&self.frame, |step| self.value(moved(p, step))),
+        }
     }
 
     fn material_in_slice(

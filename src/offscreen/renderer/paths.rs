@@ -49,6 +49,10 @@ pub(super) fn passes_of_paths(paths: u32, max_loop_turns: u32) -> u32 {
 pub struct Traced {
     /// Paths of each pixel, with those that it began with.
     pub paths: u32,
+    /// Those that it began with.
+    pub begun: u32,
+    /// What tracing the others took.
+    pub seconds: f64,
     /// The standard error of luminance, as a part of what the picture shows; `None`: one block does not tell.
     pub noise: Option<f64>,
 }
@@ -60,6 +64,36 @@ pub(super) struct Ends<'v> {
     begun: PathSums,
     keeping: Option<Keeping<'v>>,
     pub(super) traced: Traced,
+    watching: Option<Watching<'v>>,
+}
+
+impl Traced {
+    /// How long the rest of a picture of such paths takes, by what these took and the noise that they left; `None` before there are
+    /// any.
+    pub fn seconds_left(&self, path: &PathTracing) -> Option<f64> {
+        let traced = self.paths.checked_sub(self.begun).filter(|&n| n > 0)?;
+        let of_one = self.seconds / f64::from(traced);
+        let all = of_one * f64::from(path.samples.saturating_sub(self.paths));
+        // Noise falls with the root of the number of paths.
+        let of_noise = path.noise.zip(self.noise).map(|(wanted, noise)| {
+            let times = (noise / wanted).powi(2) - 1.0;
+            of_one * f64::from(self.paths) * times.max(0.0)
+        });
+        let of_time = path
+            .seconds
+            .map(|seconds| (seconds - self.seconds).max(0.0));
+        let ends = of_noise.into_iter().chain(of_time);
+        Some(ends.fold(all, f64::min))
+    }
+}
+
+/// Who is told what has been traced.
+struct Watching<'v>(Box<dyn FnMut(Traced) + Send + 'v>);
+
+impl fmt::Debug for Watching<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Watching").finish_non_exhaustive()
+    }
 }
 
 /// Who keeps the sums of whole blocks.
@@ -92,6 +126,11 @@ impl<'v> Renderer<'v> {
         });
     }
 
+    /// From here on `watch` is told after each block of paths what has been traced.
+    pub fn watch_paths(&mut self, watch: impl FnMut(Traced) + Send + 'v) {
+        self.path_ends.watching = Some(Watching(Box::new(watch)));
+    }
+
     /// What the last picture of paths took.
     pub fn traced(&self) -> Traced {
         self.path_ends.traced
@@ -110,7 +149,14 @@ impl<'v> Renderer<'v> {
         let begun = Instant::now();
         let mut sums = std::mem::take(&mut self.path_ends.begun);
         sums.want(wanted, all.denoise || self.path_ends.keeping.is_some())?;
-        self.passes_done[0] = passes_of_paths(sums.paths(), turns) as usize;
+        let begun_paths = sums.paths();
+        self.passes_done[0] = passes_of_paths(begun_paths, turns) as usize;
+        let traced = |sums: &PathSums| Traced {
+            paths: sums.paths(),
+            begun: begun_paths,
+            seconds: begun.elapsed().as_secs_f64(),
+            noise: sums.noise(),
+        };
         let has_ended = loop {
             if self.path_ends.are_reached(&sums, all, begun) {
                 break true;
@@ -121,16 +167,16 @@ impl<'v> Renderer<'v> {
             }
             self.trace(scene, paths, &mut sums, clock)?;
             self.path_ends.keep(&sums, KEPT_EVERY);
+            if let Some(Watching(watch)) = &mut self.path_ends.watching {
+                watch(traced(&sums));
+            }
         };
         self.path_ends.keep(&sums, Duration::ZERO);
         let rest = all.samples.saturating_sub(sums.paths());
         if !has_ended && rest > 0 {
             self.trace(scene, rest, &mut sums, clock)?;
         }
-        self.path_ends.traced = Traced {
-            paths: sums.paths(),
-            noise: sums.noise(),
-        };
+        self.path_ends.traced = traced(&sums);
         let width = scene.extent_pixels[0] as usize;
         let pixels = match sums.halves().filter(|_| all.denoise) {
             Some([first, second]) => {

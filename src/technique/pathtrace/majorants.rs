@@ -4,9 +4,11 @@
 //! row 0      M(i) = most extinction in bin i
 //! row r      M(i) = max of row r - 1 at i and at i + 2^(r - 1)        the largest of 2^r bins from i on
 //! ```
+//!
+//! Where opacity depends on the gradient, the most is that over all gradients.
 
 use crate::shaders::{MAJORANT_BINS, MAJORANT_ROWS, MAJORANT_VECTORS};
-use crate::transfer::{Absorption, Interpolation, MediumPoint, TransferFunction};
+use crate::transfer::{Absorption, GradientTransfer, Interpolation, MediumPoint, TransferFunction};
 
 /// Values in bins, and the table of their maxima.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,11 +53,13 @@ pub(super) struct AmountPoints<'a> {
     points: Vec<[f64; 2]>,
     interpolation: Interpolation,
     amount: Box<dyn Fn(f64) -> f64 + 'a>,
+    /// What widgets add, opacities that `amount` makes something of.
+    gradients: Option<&'a GradientTransfer>,
 }
 
-impl AmountPoints<'_> {
+impl<'a> AmountPoints<'a> {
     /// Extinction, of three colours the largest, and emission.
-    pub fn of(function: &TransferFunction, absorption: Absorption) -> [Self; 2] {
+    pub fn of(function: &'a TransferFunction, absorption: Absorption) -> [Self; 2] {
         let most = |[a, b, c]: [f64; 3]| a.max(b).max(c);
         let medium = function.medium.as_ref();
         let extinction = medium.map_or(&[][..], |medium| &medium.extinction);
@@ -75,11 +79,13 @@ impl AmountPoints<'_> {
                     [] => Box::new(move |opacity| absorption.of(opacity)),
                     _ => Box::new(|extinction| extinction),
                 },
+                gradients: function.gradient_transfer.as_ref(),
             },
             Self {
                 points: points(emission),
                 interpolation,
                 amount: Box::new(|emission| emission),
+                gradients: None,
             },
         ]
     }
@@ -88,10 +94,12 @@ impl AmountPoints<'_> {
     pub fn span(&self, other: Option<[f64; 2]>) -> Option<[f64; 2]> {
         let (first, last) = (self.points.first(), self.points.last());
         let own = first.zip(last).map(|(first, last)| [first[0], last[0]]);
-        match (own, other) {
+        let of_widgets = self.gradients.and_then(GradientTransfer::span);
+        let both = |a: Option<[f64; 2]>, b: Option<[f64; 2]>| match (a, b) {
             (Some([a, b]), Some([c, d])) => Some([a.min(c), b.max(d)]),
-            (own, other) => own.or(other),
-        }
+            (a, b) => a.or(b),
+        };
+        both(both(own, of_widgets), other)
     }
 
     /// The most between two values, both included.
@@ -111,7 +119,15 @@ impl AmountPoints<'_> {
         });
         let inside = inside.map(|p| p[1]);
         let most = inside.chain(beyond.map(|(end, _)| end[1])).chain(at_ends);
-        (self.amount)(most.fold(0.0, f64::max))
+        let own = (self.amount)(most.fold(0.0, f64::max));
+        match self.gradients {
+            None => own,
+            // No share of an opacity has more of its extinction than that share.
+            Some(gradients) => {
+                let widgets = gradients.most_opacities([low, high]);
+                gradients.most_share() * own + widgets.map(|o| (self.amount)(o)).sum::<f64>()
+            }
+        }
     }
 }
 

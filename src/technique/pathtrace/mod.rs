@@ -33,13 +33,13 @@ pub use sky::{SkyError, SkyPicture};
 
 use super::gather::{Gather, GatherDesc, RayPass, rays_of};
 use super::registry::TechniqueDesc;
-use super::{Error, Light, View};
+use super::{Error, Light, SampleInputs, View};
 use crate::color::decode_srgb;
 use crate::gpu;
 use crate::resident::TextureLayout;
 use crate::shaders::{Frame, FrameFields, MAJORANT_BINS, MAJORANT_ROWS, MAX_LIGHTS};
 pub use crate::transfer::Phase;
-use crate::transfer::{Absorption, TransferFunction};
+use crate::transfer::{Absorption, GradientTransfer, TransferFunction};
 use glam::DVec3;
 use majorants::{AmountPoints, Majorants};
 
@@ -163,8 +163,13 @@ fn gather(desc: &GatherDesc) -> Result<Box<dyn Gather>, gpu::Error> {
         true => ".levels",
         false => "",
     };
+    let found = match variant.mix {
+        SampleInputs::Channels => ".by_channels",
+        mix if mix.uses_gradient() => ".by_gradient",
+        _ => "",
+    };
     let name = format!(
-        "pathtrace.{}.{}.{transfer}{levels}",
+        "pathtrace.{}.{}.{transfer}{found}{levels}",
         variant.filter, variant.holes
     );
     let pass = RayPass::paths(desc.gpu, variant.shader(&name))?;
@@ -192,6 +197,11 @@ const TURNS_OF_MASK: u32 = 10;
 /// Of one collision: the taps of a gradient, and a cube root.
 const TURNS_OF_TAPS: u32 = 7;
 const TURNS_OF_ROOT: u32 = 5;
+/// Of an event where second derivatives are asked.
+const TURNS_OF_SECOND: u32 = 28;
+/// Of an event, and of a collision, with several volumes: whether there is data, values, materials; shares and the taps of a label.
+const TURNS_OF_CHANNELS: u32 = 3 * 5;
+const TURNS_OF_CHANNEL_MET: u32 = 5 * 5 + 15;
 
 /// What paths want to know of the volume that they go through.
 #[derive(Clone, Copy, Debug)]
@@ -208,6 +218,14 @@ pub(crate) struct Medium<'a> {
     pub value_range: [f64; 2],
     /// The shortest side of a voxel, world.
     pub smallest_spacing: f64,
+    /// The most extinction of other volumes in the same place; `None`: there are none.
+    pub beside: Option<f64>,
+}
+
+/// The most extinction that a function gives any value at any gradient.
+pub(crate) fn most_extinction(function: &TransferFunction, absorption: Absorption) -> f64 {
+    let [extinction, _] = AmountPoints::of(function, absorption);
+    extinction.most_between([f64::NEG_INFINITY, f64::INFINITY])
 }
 
 /// Light that matter sends out is found at tentative collisions: no farther apart than this on average, in voxels.
@@ -235,11 +253,14 @@ impl PathTracing {
             is_searched,
             value_range: [low, high],
             smallest_spacing,
+            beside,
         } = *medium;
         let [extinction, emission] = AmountPoints::of(function, absorption);
+        let of_others = beside.unwrap_or(0.0);
         let span = extinction.span(emission.span(None)).unwrap_or_default();
         let majorants = Majorants::new(span, |ends| {
-            let most = MAJORANT_SLACK * self.density * extinction.most_between(ends);
+            let most = extinction.most_between(ends) + of_others;
+            let most = MAJORANT_SLACK * self.density * most;
             match emission.most_between(ends) > 0.0 {
                 true => most.max(1.0 / (EMISSION_SPACINGS * smallest_spacing)),
                 false => most,
@@ -258,7 +279,19 @@ impl PathTracing {
             let there = parts.iter().filter(|(is_there, _)| *is_there);
             there.map(|(_, turns)| turns).sum()
         };
+        let gradients = function.gradient_transfer.as_ref();
+        let widgets = gradients.map_or(0, |g| 2 + (g.share.len() + g.widgets.len()) as u32);
+        let uses_gradient = gradients.is_some();
+        let uses_second = gradients.is_some_and(GradientTransfer::needs_second);
+        let are_several = beside.is_some();
         let event = sum(&[
+            (uses_gradient, TURNS_OF_TAPS + widgets),
+            (uses_second, TURNS_OF_SECOND),
+            (uses_gradient && has_holes, 6 * TURNS_OF_MASK),
+            (uses_second && has_holes, 19 * TURNS_OF_MASK),
+            (are_several, TURNS_OF_CHANNELS),
+            (are_several && has_holes, 8 * TURNS_OF_MASK),
+            (are_several && is_searched, 8 * points),
             (has_holes, TURNS_OF_MASK),
             (is_searched, 2 * points),
             (is_colored, points),
@@ -266,6 +299,7 @@ impl PathTracing {
         ]);
         let collision = sum(&[
             (self.surface > 0.0, TURNS_OF_TAPS),
+            (self.surface > 0.0 && are_several, TURNS_OF_CHANNEL_MET),
             (has_holes && self.surface > 0.0, 6 * TURNS_OF_MASK),
             (self.phase == Phase::Rayleigh, TURNS_OF_ROOT),
         ]);

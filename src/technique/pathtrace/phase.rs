@@ -95,6 +95,7 @@ fn cube_root<R: Real>(x: R) -> R {
 
 #[cfg(test)]
 mod tests {
+    use super::super::random::random_numbers;
     use super::*;
 
     fn frame(phase: Phase) -> Frame {
@@ -116,34 +117,75 @@ mod tests {
         },
     ];
 
-    /// Legendre moments of Henyey and Greenstein's function are g^l; Rayleigh's mean square is 2/5.
+    /// Cosines of that many directions.
+    const COUNT: u32 = 1 << 18;
+
+    fn cosines(phase: Phase) -> impl Iterator<Item = f64> {
+        let frame = frame(phase);
+        (0..COUNT).map(move |i| {
+            let [u, v, ..] = random_numbers::<f64>([i, 0, 8, 3]);
+            phase_cosine(&frame, u, v)
+        })
+    }
+
+    /// Legendre moments of Henyey and Greenstein's function are g^l, l up to 5; Rayleigh's mean square is 2/5. Within four standard
+    /// errors.
     #[test]
     fn moments_of_cosines_are_those_of_the_density() {
         for phase in PHASES {
-            let frame = frame(phase);
-            let mut moments = [0.0; 4];
-            let count = 1 << 16;
-            for i in 0..count {
-                // Even over the square: a lattice.
-                let u = (f64::from(i) + 0.5) / f64::from(count);
-                let v = (f64::from(i) * 0.618_033_988_749_894_9).fract();
-                let c = phase_cosine(&frame, v, u);
-                let powers = [
-                    1.0,
-                    c,
-                    0.5 * (3.0 * c * c - 1.0),
-                    0.5 * (5.0 * c * c - 3.0) * c,
-                ];
-                moments = std::array::from_fn(|l| moments[l] + powers[l] / f64::from(count));
+            let mut sums = [[0.0; 2]; 6];
+            for c in cosines(phase) {
+                let mut legendre = [1.0, c, 0.0, 0.0, 0.0, 0.0];
+                for l in 2..6 {
+                    let n = l as f64;
+                    let next = (2.0 * n - 1.0) * c * legendre[l - 1] - (n - 1.0) * legendre[l - 2];
+                    legendre[l] = next / n;
+                }
+                for (sum, p) in sums.iter_mut().zip(legendre) {
+                    *sum = [sum[0] + p, sum[1] + p * p];
+                }
             }
             let (f, [g1, g2]) = phase.parts();
             let moment = |l: i32| match phase {
-                Phase::Rayleigh => [1.0, 0.0, 0.1, 0.0][l as usize],
+                Phase::Rayleigh => [1.0, 0.0, 0.1, 0.0, 0.0, 0.0][l as usize],
                 _ => f * g1.powi(l) + (1.0 - f) * g2.powi(l),
             };
-            for (l, found) in (0..).zip(moments) {
-                assert!((found - moment(l)).abs() < 3e-4, "{phase:?} {l}: {found}");
+            for (l, [sum, squares]) in (0..).zip(sums) {
+                let n = f64::from(COUNT);
+                let found: f64 = sum / n;
+                let error = ((squares / n - found * found).max(0.0) / n).sqrt();
+                let off = found - moment(l);
+                assert!(
+                    off.abs() <= 4.0 * error,
+                    "{phase:?} {l}: {found} +- {error}"
+                );
             }
+        }
+    }
+
+    /// chi^2 of 100 bins of cosines lies within four standard deviations of 99; bins of less than five directions are none.
+    #[test]
+    fn cosines_are_drawn_by_the_density() {
+        for phase in PHASES {
+            let frame = frame(phase);
+            let mut bins = [0.0; 100];
+            for c in cosines(phase) {
+                bins[((50.0 * (c + 1.0)) as usize).min(99)] += 1.0;
+            }
+            let [mut chi, mut count] = [0.0, -1.0];
+            for (bin, &found) in bins.iter().enumerate() {
+                let steps = 200;
+                let c =
+                    |i: i32| -1.0 + 0.02 * (bin as f64 + (f64::from(i) + 0.5) / f64::from(steps));
+                let sum: f64 = (0..steps).map(|i| phase_value(&frame, c(i))).sum();
+                let wanted = f64::from(COUNT) * 2.0 * PI * sum * 0.02 / f64::from(steps);
+                if wanted >= 5.0 {
+                    chi += (found - wanted) * (found - wanted) / wanted;
+                    count += 1.0;
+                }
+            }
+            let off: f64 = (chi - count) / (2.0_f64 * count).sqrt();
+            assert!(off.abs() <= 4.0, "{phase:?}: chi^2 {chi} of {count}");
         }
     }
 

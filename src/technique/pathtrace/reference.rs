@@ -11,7 +11,7 @@ use super::walk::{Step, Walk};
 use crate::ray::{Ray, pixel_ray};
 use crate::real::{Real, add, dot, scale};
 use crate::shaders::Frame;
-use crate::technique::reference::{Gathered, Samples, moved};
+use crate::technique::reference::{Gathered, Samples};
 
 /// Numbers of a draw: of the way, of a collision, of the direction behind it and of that to a sky.
 const NUMBERS_OF_DRAW: u32 = 4;
@@ -52,6 +52,8 @@ struct Path<R> {
     has_met: bool,
     /// Of its direction, per steradian.
     density: R,
+    /// Which of several volumes its last collision is with, by their shares.
+    part: R,
     /// Of the pixel so far.
     layers: PathLayers<R>,
 }
@@ -76,6 +78,7 @@ impl<R: Real> Path<R> {
             draw: 1,
             has_met: false,
             density: zero,
+            part: zero,
             layers,
         };
         while let Some((color, place)) = path.collide(of, &mut walk, &mut key) {
@@ -90,7 +93,7 @@ impl<R: Real> Path<R> {
             let incoming = walk.world.direction;
             let normal = match walk.levels.has_crossed() {
                 true => Some(walk.levels.normal(frame, incoming)),
-                false => normal_at(of, place, incoming, numbers[0]),
+                false => normal_at(of, place, incoming, [numbers[0], path.part]),
             };
             if !path.has_met {
                 path.layers.add_first(albedo, normal, walk.t);
@@ -191,7 +194,8 @@ impl<R: Real> Path<R> {
         key: &mut [u32; 4],
     ) -> Option<([R; 3], [R; 3])> {
         loop {
-            let [u, v, ..] = self.draw(key);
+            let [u, v, w, _] = self.draw(key);
+            self.part = w;
             let Some((found, place)) = Matter::behind(of, walk, u)? else {
                 continue;
             };
@@ -319,7 +323,8 @@ impl<R: Real> Matter<R> {
     /// In voxel space.
     fn at(of: &impl Samples<R>, place: [R; 3]) -> Self {
         let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));
-        let Some(value) = of.value(place) else {
+        // Unlit, along no direction.
+        let Some([r, g, b, extinction]) = of.material(place, [zero; 3]) else {
             return Self {
                 color: [zero; 3],
                 chances: [zero; 3],
@@ -327,16 +332,17 @@ impl<R: Real> Matter<R> {
             };
         };
         let frame = of.frame();
-        let [r, g, b, extinction] = of.classify(value);
         let [density, majorant] = [frame.path_density, frame.path_majorant].map(R::from_f32);
-        let extinctions = match frame.extinction_is_colored != 0 {
-            true => of.extinctions(value),
-            false => [extinction; 3],
+        let value = of.value(place);
+        let extinctions = match value.filter(|_| frame.extinction_is_colored != 0) {
+            Some(value) => of.extinctions(value),
+            None => [extinction; 3],
         };
+        let emission = value.map_or([zero; 3], |value| of.emission(value));
         Self {
             color: [r, g, b],
             chances: extinctions.map(|sigma| (sigma * density / majorant).min(one)),
-            shine: of.emission(value).map(|e| e / majorant),
+            shine: emission.map(|e| e / majorant),
         }
     }
 }
@@ -346,26 +352,14 @@ fn normal_at<R: Real>(
     of: &impl Samples<R>,
     place: [R; 3],
     incoming: [R; 3],
-    u: R,
+    [u, part]: [R; 2],
 ) -> Option<[R; 3]> {
     let frame = of.frame();
     if frame.path_surface == 0.0 {
         return None;
     }
-    let (half, one) = (R::from_f64(0.5), R::from_f64(1.0));
-    let tap = |step| of.value(moved(place, step));
-    let slope = |k: usize| {
-        let mut step = [0; 3];
-        step[k] = 1;
-        Some(half * (tap(step)? - tap(step.map(|n| -n))?))
-    };
-    let slope = [slope(0)?, slope(1)?, slope(2)?];
-    let rows = frame
-        .voxel_from_world
-        .map(|row| [row[0], row[1], row[2]].map(R::from_f32));
-    let gradient: [R; 3] = std::array::from_fn(|k| {
-        rows[0][k] * slope[0] + rows[1][k] * slope[1] + rows[2][k] * slope[2]
-    });
+    let one = R::from_f64(1.0);
+    let gradient = of.gradient_met(place, part);
     let steepness = dot(gradient, gradient).sqrt();
     let chance = one - (-R::from_f32(frame.path_surface) * steepness).exp();
     if steepness <= R::from_f32(frame.flat_gradient) || u >= chance {

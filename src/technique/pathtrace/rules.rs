@@ -4,7 +4,8 @@ use super::{Lens, PATHS_OF_PASS, PathTracing};
 use crate::camera::{Camera, Projection};
 use crate::picture::ColorSpace;
 use crate::technique::compatibility::refuse;
-use crate::technique::{Error, Filter, Lattice, Mode, Settings};
+use crate::technique::{Error, Filter, GradientStorage, Lattice, Mode, Operator, Settings};
+use crate::transfer::TransferFunction;
 
 const PATHS: &str = "path tracing";
 
@@ -52,6 +53,10 @@ impl Settings {
         refuse(self.shading.is_some(), PATHS, of, "shading")?;
         let found = "ambient occlusion, which is there already";
         refuse(self.ambient_occlusion.is_some(), PATHS, of, found)?;
+        let is_other = self.gradient_operator() != Operator::Central
+            || self.gradient_storage == GradientStorage::Precomputed;
+        let of = "central differences";
+        refuse(is_other, PATHS, of, "another gradient filter")?;
         let of = "linear light";
         let is_display = self.color_space == ColorSpace::Display;
         refuse(is_display, PATHS, of, "display numbers")?;
@@ -82,18 +87,18 @@ impl Settings {
         refuse(has_lens && is_parallel, "a lens", of, "an orthographic one")
     }
 
-    /// Whether paths go through such a volume: one of numbers, in one texture, under a function of the value alone.
+    /// Whether paths go through such volumes: of numbers and labels, on one grid, in one texture each.
     ///
     /// # Errors
     /// [`Error::NotFor`].
-    pub(crate) fn check_path_volume(&self, is_one: bool, bricks: usize) -> Result<(), Error> {
+    pub(crate) fn check_path_volume(&self, are_numbers: bool, bricks: usize) -> Result<(), Error> {
         let is_traced = self.technique.traces_paths();
-        let of = "one volume of numbers";
+        let of = "volumes of numbers and labels on one grid";
         refuse(
-            is_traced && !is_one,
+            is_traced && !are_numbers,
             PATHS,
             of,
-            "several, or colours, or gradients",
+            "other grids, or colours, or points",
         )?;
         let of =
             "a volume that lies in one texture of the device: light goes through all of it at once";
@@ -104,7 +109,35 @@ impl Settings {
             format_args!("one in {bricks} bricks"),
         )
     }
+
+    /// Whether paths go through matter of these functions, each that of a volume: extinctions of their own have those of one volume,
+    /// and whatever the gradient is; and solid surfaces are those of one volume.
+    ///
+    /// # Errors
+    /// [`Error::NotFor`].
+    pub(crate) fn check_path_functions(
+        &self,
+        functions: &[Option<&TransferFunction>],
+    ) -> Result<(), Error> {
+        let is_traced = self.technique.traces_paths();
+        let are_several = functions.len() > 1;
+        let is_medium =
+            |f: &&TransferFunction| f.medium.is_some() && (are_several || f.uses_gradient());
+        let has_medium = functions.iter().flatten().any(is_medium);
+        let found = "several, or where opacity depends on the gradient";
+        let what = "a function with extinction, albedo, emission or phase";
+        refuse(is_traced && has_medium, what, ONE, found)?;
+        let has_levels = self.has_solid_levels() && are_several;
+        refuse(
+            has_levels,
+            "a path-traced surface of values",
+            ONE,
+            "several",
+        )
+    }
 }
+
+const ONE: &str = "one volume under a function of the value";
 
 impl PathTracing {
     pub(in crate::technique) fn check(&self) -> Result<(), Error> {

@@ -3,6 +3,7 @@
 
 mod camera;
 mod chandrasekhar;
+mod gradients;
 mod isosurfaces;
 mod lamps;
 mod layers;
@@ -10,6 +11,7 @@ pub mod medium;
 mod noise;
 mod sky;
 mod surfaces;
+mod trackers;
 
 use crate::shared::{device, volume_of};
 use glam::{DAffine3, DVec3, dvec3};
@@ -105,7 +107,7 @@ pub fn drawn(scene: &Scene) -> Picture {
 }
 
 pub fn drawn_with(scene: &Scene, layers: &[LayerKind]) -> Picture {
-    let mut renderer = Renderer::new(device(), scene.volume).expect("a renderer");
+    let mut renderer = Renderer::several(device(), scene.volumes()).expect("a renderer");
     renderer.render(scene, layers).expect("a picture").picture
 }
 

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! furnace   white matter in a white sky: each path brings 1
+//! deep      the same of matter so dense that paths are scattered a hundred times and more
 //! plane     of a value in vacuum, a light far away: each path brings albedo n . l
 //! cells     of N paths without bounces a binomial number meets matter of depth D: N (1 - e^-D), within 6 standard deviations
 //! ```
@@ -38,11 +39,12 @@ picture, and independent of the others: of N paths it is a binomial number, N p 
 Six of these: a right device is outside less than once in 10^8 choices of the seed, and the seed is one. Colours are those of the function where a \
 path meets matter: alpha times these, within 4 e, e = 2^-23, which sums, a quotient and the decoding of colours (24 e) may be off by.";
 
-/// All three.
+/// All four.
 pub fn cases() -> Vec<Case> {
     let name = |look: &str| format!("pathtrace.composite.{look}.linear_fetch.f32.perspective");
     vec![
         Case::new(name("furnace"), furnace),
+        Case::new(name("deep"), deep),
         Case::new(name("plane"), plane),
         Case::new(
             "pathtrace.composite.cells.linear_fetch.f32.orthographic",
@@ -71,13 +73,34 @@ fn matter(albedo: [f64; 3], extinctions: &[(f64, f64)]) -> TransferFunction {
 }
 
 fn furnace(bed: &mut TestBed) -> Result<Measurement, Stop> {
+    in_white_sky(
+        bed,
+        PathTracing {
+            phase: Phase::HenyeyGreenstein(0.5),
+            surface: 3.0,
+            ..PathTracing::default()
+        },
+    )
+}
+
+/// Optical depths of some ten: one path in a hundred is scattered more than 64 times, none so often that it ends by chance.
+fn deep(bed: &mut TestBed) -> Result<Measurement, Stop> {
+    let density = 3.0;
+    in_white_sky(
+        bed,
+        PathTracing {
+            density,
+            ..PathTracing::default()
+        },
+    )
+}
+
+fn in_white_sky(bed: &mut TestBed, path: PathTracing) -> Result<Measurement, Stop> {
     let shot = shot(PATHS, Filter::Linear).with(|settings| {
         settings.path = PathTracing {
             samples: 4,
-            phase: Phase::HenyeyGreenstein(0.5),
-            surface: 3.0,
             sky: [1.0; 3],
-            ..PathTracing::default()
+            ..path
         };
     });
     let numbers = Numbers::of(&shot, super::ground::waves);

@@ -16,10 +16,12 @@ use super::{lamp, lit, shot};
 use crate::conformance::case::{Case, Stop};
 use crate::conformance::measurement::Measurement;
 use crate::conformance::test_bed::TestBed;
-use crate::technique::Filter;
 use crate::technique::pathtrace::{LampShape, Lens, PathTracing, SkyPicture};
-use crate::transfer::{MediumPoint, MediumTransfer, Phase, TransferFunction};
-use glam::dvec3;
+use crate::technique::{ClipPlane, Filter};
+use crate::transfer::{
+    GradientTransfer, MediumPoint, MediumTransfer, OpacityPoint, Phase, TransferFunction,
+};
+use glam::{DVec3, dvec3};
 
 /// What paths meet, and what light there is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,10 +43,14 @@ enum Look {
     Lamps,
     /// Three extinctions, and light of its own.
     Medium,
+    /// Cut by two planes, which let light in.
+    Cut,
+    /// More opaque where it is steep.
+    Steep,
 }
 
 impl Look {
-    const ALL: [(Self, &str); 9] = [
+    const ALL: [(Self, &str); 11] = [
         (Self::TwoLobes, "two_lobes"),
         (Self::Isotropic, "isotropic"),
         (Self::RayleighOnce, "rayleigh_once"),
@@ -54,6 +60,8 @@ impl Look {
         (Self::Sky, "sky"),
         (Self::Lamps, "lamps"),
         (Self::Medium, "medium"),
+        (Self::Cut, "cut"),
+        (Self::Steep, "steep"),
     ];
 
     fn path(self) -> PathTracing {
@@ -62,7 +70,7 @@ impl Look {
                 samples: 6,
                 ..lit()
             },
-            Self::Medium => PathTracing {
+            Self::Medium | Self::Cut | Self::Steep => PathTracing {
                 samples: 2,
                 bounces: Some(2),
                 ..lit()
@@ -129,7 +137,7 @@ impl Look {
     }
 }
 
-/// Nine of the baseline, none beyond.
+/// Eleven of the baseline, none beyond.
 pub fn cases() -> Vec<Case> {
     let case = |(look, word): (Look, &str)| {
         let name = format!("reference.pathtrace.composite.{word}.linear_fetch.perspective");
@@ -143,10 +151,14 @@ fn measure(bed: &mut TestBed, look: Look) -> Result<Measurement, Stop> {
         settings.path = look.path();
         // The reference has one majorant: cells change which numbers are drawn.
         settings.skip = false;
+        if look == Look::Cut {
+            settings.clip_planes = cuts();
+        }
     });
     let volume = reference::volume(&shot, false);
     let function = match look {
         Look::Medium => medium(),
+        Look::Steep => steep(),
         _ => ground::ramps(),
     };
     reference::of_scene(bed, &shot, &shot.scene(&volume, Some(&function)))
@@ -161,6 +173,32 @@ fn sky() -> SkyPicture {
     // No row ends where a cosine is put together of two pieces, on either of which a division may end.
     let pixels: Vec<_> = (0..72).map(pixel).collect();
     SkyPicture::new([12, 6], &pixels).expect("twice as wide as high, with light in it")
+}
+
+/// Through the middle of the volume, aslant to each other.
+fn cuts() -> Vec<ClipPlane> {
+    let center = ground::grid().center();
+    let plane = |normal: DVec3, by: f64| ClipPlane {
+        normal,
+        offset: normal.dot(center) + by,
+    };
+    vec![
+        plane(dvec3(1.0, 0.4, 0.3), -2.0),
+        plane(dvec3(-0.2, 1.0, -0.3), -3.0),
+    ]
+}
+
+/// The ramps, all of it where values rise by a third of their range in a voxel.
+fn steep() -> TransferFunction {
+    let point = |value, opacity| OpacityPoint { value, opacity };
+    TransferFunction {
+        gradient_transfer: Some(GradientTransfer {
+            steepest: Some(0.3),
+            share: vec![point(0.0, 0.3), point(1.0, 1.0)],
+            widgets: Vec::new(),
+        }),
+        ..ground::ramps()
+    }
 }
 
 /// Three extinctions, two albedos and light of its own, beside the colours of the ramps.

@@ -27,15 +27,12 @@ pub const RULES: &[Rule] = &[
         "path tracing is for what lies behind cuts",
         "a face is a surface that light falls on from all around: each flight of each path against the planes of the cut",
     ),
-    of(
-        &["function of value and gradient"],
-        not_built(
-            "path tracing is for one volume of numbers",
-            "a gradient wherever a collision is tried, 48 fetches beside 8, and majorants over two numbers",
-        ),
+    not_built(
+        "a path-traced surface of values is for one volume under a function of the value",
+        "labels of each voxel around each piece of a surface, 8 fetches more, and no surface between a label that is hidden and one that is not",
     ),
     not_built(
-        "path tracing is for one volume of numbers",
-        "all volumes wherever a collision is tried, 8 fetches more for each, and majorants that are sums of theirs",
+        "path tracing is for volumes of numbers and labels on one grid",
+        "volumes on other grids and colours: a place in each grid wherever a collision is tried, 96 shader variants more; and what of a colour is albedo",
     ),
 ];
