@@ -48,7 +48,7 @@ fn spheres_lie_on_the_line_and_ribbons_are_flat() {
     };
     let (tube, _) = style("tube");
     let (points, said) = style("points");
-    assert!(said.contains("A sphere every "), "{said}");
+    assert!(said.contains("a sphere every "), "{said}");
     assert!(
         count(&points) > 20 && count(&points) < count(&tube),
         "{}",

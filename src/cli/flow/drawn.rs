@@ -413,9 +413,9 @@ impl DrawnLines {
             let marks = ways.ways.iter().map(|way| way.marks(now, step));
             let marks = marks.flatten().map(|mark| vec![mark]).collect();
             self.sets.push(LineSet::plain(marks, width(SPHERE_WIDTH)?));
-            let words = format!("A sphere every {}", in_words(step));
-            progress.note(&words);
-            self.words.push(words);
+            let step = in_words(step);
+            progress.note(&format!("a sphere every {step}"));
+            self.words.push(format!("A sphere every {step}"));
         } else {
             let drawn = ways.ways.iter().filter_map(|way| {
                 let Drawn {

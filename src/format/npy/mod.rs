@@ -288,10 +288,15 @@ fn header(array: &Array, kind: Kind, fortran_order: bool) -> Result<Header, Prob
             "the array is in Fortran order: its first axis is that of the shape's first number all the same".to_owned(),
         );
     }
-    let [row, ..] = array.dims;
-    if array.axes.len() == 2 && !fortran_order && (4..=6).contains(&row) {
+    // The last of the shape.
+    let row = match fortran_order {
+        true => array.axes.last(),
+        false => array.axes.first(),
+    };
+    let row = row.filter(|row| array.axes.len() == 2 && (4..=6).contains(&row.size));
+    if let Some(Axis { size, .. }) = row {
         notes.push(format!(
-            "rows of {row} numbers are an image here; --points takes them as scattered points, x, y, z, value[, std[, weight]]"
+            "rows of {size} numbers are an image here; --points takes them as scattered points, x, y, z, value[, std[, weight]]"
         ));
     }
     if kind.is_bool {
