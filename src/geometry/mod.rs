@@ -35,6 +35,7 @@ mod triangles;
 
 pub use round_cone::{Hit, RoundCone};
 pub use seen::Seen;
+#[cfg(feature = "cli")]
 pub(crate) use seen::dull;
 pub use triangle::{TriangleHit, triangle_hit};
 pub use triangles::{Corner, Triangles};

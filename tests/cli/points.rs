@@ -65,10 +65,9 @@ fn points_are_splatted_without_a_flag_and_what_was_chosen_is_said() {
     folder.file("p6.npy", npy);
     assert!(drawn(&folder, "p6.npy --points").0 > 10);
     // Without the word it is an image, and both ways to that mistake say the word.
-    let info = folder.run("info p6.npy");
-    info.assert_done();
+    let (_, image) = drawn(&folder, "p6.npy");
     let note = "--points takes them as scattered points";
-    assert!(info.err.contains(note), "{}", info.err);
+    assert!(image.err.contains(note), "{}", image.err);
     folder
         .run(&format!(
             "render p6.npy --points-as splats -o p.npy {SMALL}"

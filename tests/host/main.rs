@@ -85,6 +85,7 @@ mod format_grib;
 mod format_hdf5;
 mod format_hostile;
 mod format_meaning;
+#[cfg(feature = "files")]
 mod format_mesh;
 mod format_metaimage;
 mod format_metaimage_refused;
