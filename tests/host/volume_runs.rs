@@ -131,7 +131,8 @@ fn runs_that_are_not_those_of_the_set_are_seen() {
         found
     };
     assert_eq!(is_seen(&|runs, row| runs.row(row).to_vec()), 0);
-    let wrong: [(&str, &dyn Fn(&Runs, usize) -> Vec<Run>); 3] = [
+    type OfRow<'a> = &'a dyn Fn(&Runs, usize) -> Vec<Run>;
+    let wrong: [(&str, OfRow); 3] = [
         ("over the end of a row", &over_the_end),
         ("in two", &in_two),
         ("without bit 31", &without_bit_31),
@@ -240,7 +241,8 @@ fn ranks_that_are_not_those_of_payloads_are_seen() {
     };
     let with_itself = |words: &[RankWord], i: u32| rank(words, i).map(|found| found + 1);
     let without_bit_31 = |words: &[RankWord], i: u32| rank(words, i).filter(|_| i % 32 != 31);
-    let wrong: [(&str, &dyn Fn(&[RankWord], u32) -> Option<u32>); 3] = [
+    type Rank<'a> = &'a dyn Fn(&[RankWord], u32) -> Option<u32>;
+    let wrong: [(&str, Rank); 3] = [
         ("the prefix of the next word", &of_next),
         ("the voxel counts itself", &with_itself),
         ("bit 31 is none", &without_bit_31),

@@ -243,8 +243,8 @@ fn check(shot: &PictureCase, volume: &Volume, found: &Picture, wrong: Option<Wro
             take(wanted[0], if value.is_nan() { 0.0 } else { value });
             continue;
         }
-        for c in 0..4 {
-            take(wanted[c], found.pixels[i][c]);
+        for (wanted, &found) in wanted.into_iter().zip(&found.pixels[i]) {
+            take(wanted, found);
         }
     }
     worst
