@@ -4,7 +4,8 @@
 //! Slices in 16-bit floats have faults of their own, on a device of the least limits.
 
 use crate::driver_faults::{
-    ANSWERS, CLAMPED_FAULTS, FAULTS, Fault, PROBE_FAULTS, SCATTER_FAULTS, faulty, tell, told,
+    ANSWERS, CLAMPED_FAULTS, FAULTS, Fault, PROBE_FAULTS, SCATTER_FAULTS, SPLAT_FAULTS,
+    VOXEL_FAULTS, WARP_FAULTS, faulty, tell, told,
 };
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -73,8 +74,16 @@ fn every_lie_is_caught_and_the_page_says_by_what() {
     let mut healthy = BTreeMap::new();
     let mut table = String::from("| Fault | caught by | verdict |\n|---|---|---|\n");
     let mut missed = Vec::new();
-    let of_answers = ANSWERS.iter().chain(SCATTER_FAULTS);
-    for (what, fault, pattern) in FAULTS.iter().chain(of_answers).chain(PROBE_FAULTS) {
+    let tables = [
+        FAULTS,
+        WARP_FAULTS,
+        SPLAT_FAULTS,
+        VOXEL_FAULTS,
+        ANSWERS,
+        SCATTER_FAULTS,
+        PROBE_FAULTS,
+    ];
+    for (what, fault, pattern) in tables.into_iter().flatten() {
         match caught(&all, pattern, *fault, Caps::UNLIMITED, &mut healthy) {
             Ok((name, record)) => {
                 println!("{what}: {}", record.reason);

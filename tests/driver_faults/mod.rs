@@ -14,6 +14,9 @@ mod table;
 mod table_geometry;
 mod table_probes;
 mod table_scatter;
+mod table_splat;
+mod table_voxels;
+mod table_warp;
 mod transfers;
 
 use ash::vk;
@@ -27,6 +30,9 @@ pub use table::{CLAMPED_FAULTS, FAULTS};
 pub use table_geometry::{CONE_FAULTS, END_FAULTS};
 pub use table_probes::PROBE_FAULTS;
 pub use table_scatter::SCATTER_FAULTS;
+pub use table_splat::SPLAT_FAULTS;
+pub use table_voxels::VOXEL_FAULTS;
+pub use table_warp::WARP_FAULTS;
 
 /// The real function of that name, called.
 macro_rules! behind {

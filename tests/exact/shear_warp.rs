@@ -1,7 +1,9 @@
 //! Shear-warp: each pixel is the bilinear mean of four rays of a 2D stack, through the points of a plane between its slices.
 
 mod blur;
+mod counts;
 mod four_rays;
+mod law;
 mod moved;
 mod planes;
 mod waves;

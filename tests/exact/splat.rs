@@ -1,5 +1,6 @@
 //! Splats against closed forms, and against sums over all voxels in f64: on the CPU reference and on the device.
 
+mod as_points;
 mod classified;
 mod defaults;
 mod laws;

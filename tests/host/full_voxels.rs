@@ -130,9 +130,13 @@ fn after_filtering_every_voxel_is_full_in_which_a_sample_is_seen() {
     assert_eq!(Settings::default().filter, Filter::Linear);
     let mut random = Random::new(23);
     let (mut seen, mut empty) = (0, 0);
+    // Of those, in voxels that are not full by their own value: without what lies around them they were left out.
+    let mut beside = 0;
     for volume in volumes() {
         for function in functions() {
             let set = full_after_filtering(&volume, &function, halo);
+            let alone = Halo { voxels: 0, ..halo };
+            let alone = full_after_filtering(&volume, &function, alone);
             empty += set.voxel_count() - set.full_count();
             for voxel in voxels(DIMS) {
                 for _ in 0..20 {
@@ -141,6 +145,7 @@ fn after_filtering_every_voxel_is_full_in_which_a_sample_is_seen() {
                     if function.opacity(value) > 0.0 {
                         assert!(set.contains(voxel), "{point:?}, {value} by {function:?}");
                         seen += 1;
+                        beside += u32::from(!alone.contains(voxel));
                     }
                 }
             }
@@ -152,6 +157,10 @@ fn after_filtering_every_voxel_is_full_in_which_a_sample_is_seen() {
     assert!(
         seen > 10_000 && empty > 1000,
         "{seen} samples seen, {empty} voxels empty"
+    );
+    assert!(
+        beside > 1000,
+        "of {seen} samples seen {beside} by what is beside"
     );
 }
 

@@ -1,7 +1,10 @@
 //! The octree against the set itself: leaves that tile, canonical nodes, addresses in Morton order.
 
 use crate::voxel_sets::{random, sets, voxels};
-use stratavox::volume::{Address, Leaf, NodeState, Octree, VoxelSet};
+use stratavox::volume::{Address, Leaf, MixedNode, NodeState, Octree, VoxelSet};
+
+/// What is wrong, where anything is.
+type Found = Result<(), String>;
 
 #[test]
 fn an_octree_gives_back_the_set() {
@@ -16,32 +19,99 @@ fn an_octree_gives_back_the_set() {
     }
 }
 
-#[test]
-fn leaves_tile_the_cube_once() {
-    for set in sets() {
-        let octree = Octree::new(&set);
-        let [nx, ny, nz] = set.dims();
-        let mut covered = vec![0_u32; (nx * ny * nz) as usize];
-        let mut volume = 0;
-        for leaf in octree.leaves() {
-            volume += leaf.side.pow(3);
-            let end = |k: usize| (u64::from(leaf.min[k]) + leaf.side).min(set.dims()[k].into());
-            let [x1, y1, z1] = [0, 1, 2].map(|k| end(k) as u32);
-            for z in leaf.min[2]..z1 {
-                for y in leaf.min[1]..y1 {
-                    for x in leaf.min[0]..x1 {
-                        covered[(x + nx * (y + ny * z)) as usize] += 1;
-                        assert_eq!(set.contains([x, y, z]), leaf.is_full, "{leaf:?}");
+/// Leaves of an octree against the set: they tile the cube once, hold what it has there, and no full one has a voxel outside of
+/// the grid.
+fn check_leaves(set: &VoxelSet, octree: &Octree) -> Found {
+    let [nx, ny, nz] = set.dims();
+    let mut covered = vec![0_u32; (nx * ny * nz) as usize];
+    let mut volume = 0;
+    for leaf in octree.leaves() {
+        volume += leaf.side.pow(3);
+        let end = |k: usize| (u64::from(leaf.min[k]) + leaf.side).min(set.dims()[k].into());
+        let [x1, y1, z1] = [0, 1, 2].map(|k| end(k) as u32);
+        for z in leaf.min[2]..z1 {
+            for y in leaf.min[1]..y1 {
+                for x in leaf.min[0]..x1 {
+                    covered[(x + nx * (y + ny * z)) as usize] += 1;
+                    if set.contains([x, y, z]) != leaf.is_full {
+                        return Err(format!("{leaf:?} at {x}, {y}, {z}"));
                     }
                 }
             }
-            // A full leaf has no voxel outside of the grid.
-            let is_inside = (0..3).all(|k| u64::from(leaf.min[k]) + leaf.side == end(k));
-            assert!(is_inside || !leaf.is_full, "{leaf:?} in {:?}", set.dims());
         }
-        assert_eq!(volume, octree.side().pow(3));
-        assert!(covered.iter().all(|&times| times == 1), "{:?}", set.dims());
+        let is_inside = (0..3).all(|k| u64::from(leaf.min[k]) + leaf.side == end(k));
+        if !is_inside && leaf.is_full {
+            return Err(format!("{leaf:?} in {:?}", set.dims()));
+        }
     }
+    match volume == octree.side().pow(3) && covered.iter().all(|&times| times == 1) {
+        true => Ok(()),
+        false => Err(format!(
+            "leaves of {volume} voxels, each covered as {covered:?} say"
+        )),
+    }
+}
+
+#[test]
+fn leaves_tile_the_cube_once() {
+    for set in sets() {
+        assert_eq!(check_leaves(&set, &Octree::new(&set)), Ok(()));
+    }
+}
+
+/// What lies outside of the grid is empty: an octree of what is full there is another.
+#[test]
+fn leaves_that_are_full_outside_of_the_grid_are_seen() {
+    let mut seen = 0;
+    for set in sets() {
+        let side = Octree::new(&set).side() as u32;
+        let is_inside = |voxel: [u32; 3]| (0..3).all(|k| voxel[k] < set.dims()[k]);
+        let padded = VoxelSet::by([side; 3], |voxel| !is_inside(voxel) || set.contains(voxel));
+        let is_seen = check_leaves(&set, &Octree::new(&padded)).is_err();
+        // Without a voxel beside the grid there is nothing to see.
+        assert_eq!(is_seen, set.dims() != [side; 3], "{:?}", set.dims());
+        seen += usize::from(is_seen);
+    }
+    assert!(seen > 50, "{seen}");
+}
+
+/// Mixed nodes of an octree, which is canonical: none has eight children that are all full or all empty.
+fn check_canonical(nodes: &[MixedNode]) -> Found {
+    let is_alike = |node: &MixedNode| node.full == 0xff || node.full | node.mixed == 0;
+    match nodes
+        .iter()
+        .find(|node| is_alike(node) || node.full & node.mixed != 0)
+    {
+        None => Ok(()),
+        Some(node) => Err(format!("{node:?}")),
+    }
+}
+
+/// Eight full children in the place of a full one, where it is the last of the last level but one: all others stay where they are.
+#[test]
+fn siblings_that_are_not_merged_are_seen() {
+    let mut seen = 0;
+    for set in sets() {
+        let mut nodes = Octree::new(&set).nodes().to_vec();
+        assert_eq!(check_canonical(&nodes), Ok(()));
+        let Some(node) = nodes.iter_mut().rev().find(|node| node.full != 0) else {
+            continue;
+        };
+        let bit = 1 << node.full.ilog2();
+        node.full &= !bit;
+        node.mixed |= bit;
+        for (full, mixed) in [(0xff, 0), (0, 0)] {
+            let child = MixedNode {
+                full,
+                mixed,
+                ..MixedNode::default()
+            };
+            let with_child = [nodes.as_slice(), &[child]].concat();
+            assert!(check_canonical(&with_child).is_err(), "{:?}", set.dims());
+        }
+        seen += 1;
+    }
+    assert!(seen > 50, "{seen}");
 }
 
 /// The nodes of a cube by their definition: one, and those of its children where it is mixed.
@@ -64,11 +134,7 @@ fn nodes_are_as_few_as_there_can_be() {
         assert_eq!(octree.node_count(), 1 + 8 * mixed);
         assert_eq!(octree.bytes(), 8 * mixed);
         assert_eq!(octree.leaf_count(), octree.leaves().count() as u64);
-        for node in octree.nodes() {
-            assert_ne!(node.full, 0xff, "eight full children");
-            assert_ne!(node.full | node.mixed, 0, "eight empty children");
-            assert_eq!(node.full & node.mixed, 0, "{node:?}");
-        }
+        assert_eq!(check_canonical(octree.nodes()), Ok(()));
         let levels = octree.levels();
         let counts = levels
             .iter()
@@ -87,13 +153,13 @@ fn nodes_are_as_few_as_there_can_be() {
     }
 }
 
-/// The address by its definition, from where the leaf is.
-fn address(leaf: &Leaf, octree: &Octree) -> String {
+/// The address by its definition, from where the leaf is: digits 1 + x + 2 y + 4 z of the halves, or of the axes in another order.
+fn address(leaf: &Leaf, octree: &Octree, [x, y, z]: [usize; 3]) -> String {
     let mut text = String::new();
     let mut half = octree.side() / 2;
     while half >= leaf.side {
         let bit = |k: usize| u64::from(leaf.min[k]) / half % 2;
-        text += &(1 + bit(0) + 2 * bit(1) + 4 * bit(2)).to_string();
+        text += &(1 + bit(x) + 2 * bit(y) + 4 * bit(z)).to_string();
         half /= 2;
     }
     text
@@ -109,11 +175,14 @@ fn morton(min: [u32; 3]) -> u128 {
 
 #[test]
 fn addresses_are_in_morton_order_and_none_begins_another() {
+    let mut of_z_first = 0;
     for set in sets() {
         let octree = Octree::new(&set);
         let leaves: Vec<Leaf> = octree.leaves().collect();
         for leaf in &leaves {
-            assert_eq!(leaf.address.to_string(), address(leaf, &octree));
+            let digits = leaf.address.to_string();
+            assert_eq!(digits, address(leaf, &octree, [0, 1, 2]));
+            of_z_first += usize::from(digits != address(leaf, &octree, [2, 1, 0]));
             assert_eq!(leaf.address.to_string().parse(), Ok(leaf.address.clone()));
             let state = if leaf.is_full {
                 NodeState::Full
@@ -132,6 +201,10 @@ fn addresses_are_in_morton_order_and_none_begins_another() {
             assert!(!second.starts_with(first), "{pair:?}");
         }
     }
+    assert!(
+        of_z_first > 1000,
+        "children in the order of z first: {of_z_first} seen"
+    );
 }
 
 #[test]

@@ -14,6 +14,7 @@ mod shadow;
 mod slab;
 mod splat;
 mod surface;
+mod warp;
 
 use super::case::Case;
 
@@ -31,6 +32,7 @@ pub fn cases() -> Vec<Case> {
     cases.extend(shadow::cases());
     cases.extend(relation::cases());
     cases.extend(reference::cases());
+    cases.extend(warp::cases());
     cases.extend(splat::cases());
     cases.extend(points::cases());
     cases.extend(scatter::cases());

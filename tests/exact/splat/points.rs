@@ -1,10 +1,12 @@
 //! Splats of scattered points against sums over all points in f64, on the CPU reference and on the device.
 
+mod moved;
+
 use super::{function, values};
 use crate::shared::{Worst, device, device_with};
-use glam::{DVec3, dvec3};
+use glam::{DMat3, DVec3, dvec3};
 use std::f64::consts::TAU;
-use stratavox::camera::{Camera, Projection};
+use stratavox::camera::{Camera, Projection, Rays};
 use stratavox::gpu::Caps;
 use stratavox::offscreen::{Renderer, reference};
 use stratavox::picture::{ColorSpace, LayerKind, Picture};
@@ -111,6 +113,23 @@ fn pictures(shot: &Case, points: &Points, layers: &[LayerKind]) -> [(&'static st
     ]
 }
 
+/// What is wrong of a sum over points: what checks must not take for the law.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Wrong {
+    /// Points that pixels widen are as high as before.
+    KeptPeak,
+    /// What pixels widen them by is all of their width.
+    WideningAlone,
+    /// Points are listed where their centres are.
+    BoxOfCentre,
+    /// The nearest to the eye lies in front.
+    ByDistance,
+    /// The farthest lies in front.
+    BackToFront,
+    /// Of equal depths the last of the file lies in front.
+    LastOfTies,
+}
+
 /// What a ray meets of a point.
 struct Met {
     index: usize,
@@ -118,8 +137,8 @@ struct Met {
     /// In standard deviations, and how far rounding to f32 may move it.
     off: f64,
     blur: f64,
-    /// Of the splat, as it is drawn.
-    std: f64,
+    /// Of the splat, as high as it is drawn.
+    std_of_peak: f64,
 }
 
 impl Met {
@@ -157,7 +176,8 @@ fn end_of(shot: &Case) -> f64 {
 
 /// All points before the eye of a pixel's ray that rounding may find within reach, from front to back. Of the eye and of
 /// pixels it takes the camera's word alone.
-fn met(shot: &Case, points: &Points, [x, y]: [u32; 2]) -> Vec<Met> {
+fn met(shot: &Case, points: &Points, [x, y]: [u32; 2], wrong: Option<Wrong>) -> Vec<Met> {
+    let is = |of| wrong == Some(of);
     let rays = shot.camera.rays(EXTENT);
     let (origin, direction) = rays.at(f64::from(x) + 0.5, f64::from(y) + 0.5);
     let direction = direction.normalize();
@@ -175,66 +195,112 @@ fn met(shot: &Case, points: &Points, [x, y]: [u32; 2]) -> Vec<Met> {
                 }
                 ref other => panic!("{other:?}"),
             };
-            let std = f64::from(points.stds()[index]);
-            let std = std.max(shot.settings.splat.low_pass * pixel);
+            let own = f64::from(points.stds()[index]);
+            let widest = own.max(shot.settings.splat.low_pass * pixel);
+            let std = match is(Wrong::WideningAlone) {
+                true => (widest * widest - own * own).sqrt(),
+                false => widest,
+            };
+            let std_of_peak = if is(Wrong::KeptPeak) { own } else { std };
             let along = to.dot(direction);
             let off = (to - along * direction).length() / std;
             // Half an ulp of origin and centre, which are less than 20 from the box's centre together beside their
             // difference; of that and of the direction, whose norm is off by three, and of two products.
             let blur = 8.0 * EPS * (to.length() + 20.0) / std;
-            let is_met = depth > 0.0 && along > 0.0 && off <= reach + blur;
-            is_met.then_some(Met {
+            let is_listed =
+                !is(Wrong::BoxOfCentre) || is_in_block(&rays, points.places()[index], [x, y]);
+            let is_met = std > 0.0 && depth > 0.0 && along > 0.0 && off <= reach + blur;
+            let depth = if is(Wrong::ByDistance) {
+                from_eye.length()
+            } else {
+                depth
+            };
+            (is_met && is_listed).then_some(Met {
                 index,
                 depth,
                 off,
                 blur,
-                std,
+                std_of_peak,
             })
         })
         .collect();
+    if is(Wrong::LastOfTies) {
+        all.reverse();
+    }
     all.sort_by(|a, b| a.depth.total_cmp(&b.depth));
+    if is(Wrong::BackToFront) {
+        all.reverse();
+    }
     all
+}
+
+/// Whether a place is seen in the block of 8 x 8 pixels of this one.
+fn is_in_block(rays: &Rays, place: DVec3, [x, y]: [u32; 2]) -> bool {
+    let to = place - rays.origin;
+    // The pixel (x, y) whose ray goes through it:
+    //     parallel       origin + x dx + y dy + t direction = place
+    //     from an eye    direction + x dx + y dy = s (place - eye)
+    let pixel = match rays.direction_dx == DVec3::ZERO {
+        true => DMat3::from_cols(rays.origin_dx, rays.origin_dy, rays.direction).inverse() * to,
+        false => {
+            let sides = DMat3::from_cols(rays.direction_dx, rays.direction_dy, -to);
+            -(sides.inverse() * rays.direction)
+        }
+    };
+    let [column, row, _] = pixel.to_array();
+    [(column, x), (row, y)]
+        .iter()
+        .all(|(at, n)| (at / 8.0).floor() == f64::from(n / 8))
 }
 
 fn pixels() -> impl Iterator<Item = [u32; 2]> {
     (0..EXTENT[1]).flat_map(|y| (0..EXTENT[0]).map(move |x| [x, y]))
 }
 
+/// Sums of a picture against those over all points.
+fn check_sums(shot: &Case, points: &Points, picture: &Picture, wrong: Option<Wrong>) -> Worst {
+    let mode = shot.settings.mode;
+    let mut worst = Worst::new(format!("{mode}, {wrong:?}"));
+    for (pixel, &found) in pixels().zip(values(picture)) {
+        // Sum of m f F, of m F, and what rounding makes of both.
+        let mut sums = [0.0; 4];
+        let (end, all) = (end_of(shot), met(shot, points, pixel, wrong));
+        // Each addition rounds the sum once, each term is a product of three.
+        let adding = (all.len() as f64 + 4.0) * EPS;
+        for met in all {
+            let value = f64::from(points.values()[met.index]);
+            let weight = f64::from(points.weight(met.index)) / (TAU * met.std_of_peak.powi(2));
+            sums[0] += weight * value * met.share_within(end);
+            sums[1] += weight * met.share_within(end);
+            sums[2] += weight * value * met.share_error(end);
+            sums[3] += weight * met.share_error(end);
+        }
+        sums[2] += adding * sums[0];
+        sums[3] += adding * sums[1];
+        let found = f64::from(found);
+        if mode == Mode::Xray {
+            let found = if found.is_nan() { 0.0 } else { found };
+            worst.take(pixel, found - sums[0], sums[2]);
+        } else if sums[1] > 100.0 * sums[3] {
+            let wanted = sums[0] / sums[1];
+            let allowed = (sums[2] + wanted * sums[3]) / (sums[1] - sums[3]);
+            worst.take(pixel, found - wanted, allowed + 2.0 * EPS * wanted);
+        }
+    }
+    worst
+}
+
 #[test]
 fn sums_are_those_over_all_points() {
     let points = cloud(400, 3);
     for mode in SUMS {
-        for (number, shot) in shots(mode).iter().enumerate() {
+        for shot in &shots(mode) {
             for (name, picture) in pictures(shot, &points, &[LayerKind::Value]) {
-                let mut worst = Worst::new(format!("{mode} {number} {name}"));
-                for (pixel, &found) in pixels().zip(values(&picture)) {
-                    // Sum of m f F, of m F, and what rounding makes of both.
-                    let mut sums = [0.0; 4];
-                    let (end, all) = (end_of(shot), met(shot, &points, pixel));
-                    // Each addition rounds the sum once, each term is a product of three.
-                    let adding = (all.len() as f64 + 4.0) * EPS;
-                    for met in all {
-                        let value = f64::from(points.values()[met.index]);
-                        let weight =
-                            f64::from(points.weight(met.index)) / (TAU * met.std * met.std);
-                        sums[0] += weight * value * met.share_within(end);
-                        sums[1] += weight * met.share_within(end);
-                        sums[2] += weight * value * met.share_error(end);
-                        sums[3] += weight * met.share_error(end);
-                    }
-                    sums[2] += adding * sums[0];
-                    sums[3] += adding * sums[1];
-                    let found = f64::from(found);
-                    if mode == Mode::Xray {
-                        let found = if found.is_nan() { 0.0 } else { found };
-                        worst.take(pixel, found - sums[0], sums[2]);
-                    } else if sums[1] > 100.0 * sums[3] {
-                        let wanted = sums[0] / sums[1];
-                        let allowed = (sums[2] + wanted * sums[3]) / (sums[1] - sums[3]);
-                        worst.take(pixel, found - wanted, allowed + 2.0 * EPS * wanted);
-                    }
+                println!("{name}:");
+                check_sums(shot, &points, &picture, None).assert_holds();
+                for wrong in [Wrong::KeptPeak, Wrong::WideningAlone, Wrong::BoxOfCentre] {
+                    check_sums(shot, &points, &picture, Some(wrong)).assert_caught();
                 }
-                worst.assert_holds();
             }
         }
     }
@@ -250,9 +316,9 @@ fn with_ties(points: &Points) -> Points {
     Points::new(places, values, Some(stds), None).expect("points")
 }
 
-#[test]
-fn a_composite_is_that_of_all_points_by_depth() {
-    let (points, f) = (with_ties(&cloud(400, 4)), function());
+/// A composite against that of all points by depth.
+fn check_composite(shot: &Case, points: &Points, picture: &Picture, wrong: Option<Wrong>) -> Worst {
+    let f = function();
     let table = stratavox::transfer::Points::new(
         &f,
         Absorption::Extinction {
@@ -260,35 +326,54 @@ fn a_composite_is_that_of_all_points_by_depth() {
         },
         ColorSpace::Display,
     );
-    for (number, shot) in shots(Mode::Composite).iter().enumerate() {
-        for (name, picture) in pictures(shot, &points, &[]) {
-            let mut worst = Worst::new(format!("composite {number} {name}"));
-            for (pixel, found) in pixels().zip(&picture.pixels) {
-                let (mut color, mut left, mut error) = ([0.0; 3], 1.0, 0.0);
-                let end = end_of(shot);
-                for met in met(shot, &points, pixel) {
-                    let value = f64::from(points.values()[met.index]);
-                    let [r, g, b, extinction] = classify_by_points(&table, value);
-                    let std = f64::from(points.stds()[met.index]);
-                    let length = TAU.sqrt() * std * (std / met.std).powi(2);
-                    let depth = extinction * length * met.share_within(end);
-                    let opacity = -(-depth).exp_m1();
-                    for (sum, c) in color.iter_mut().zip([r, g, b]) {
-                        *sum += left * opacity * c;
-                    }
-                    left *= 1.0 - opacity;
-                    // Of the depth: of its factors, which are 8 ulp of colour points and their exponents beside the share;
-                    // 1 - e^-x, with its exponential: 4 ulp of 1; what it is added to and multiplied with: one each of at
-                    // most 1.
-                    error +=
-                        extinction * length * met.share_error(end) + 8.0 * EPS * depth + 6.0 * EPS;
-                }
-                let wanted = [color[0], color[1], color[2], 1.0 - left];
-                for (found, wanted) in found.iter().zip(wanted) {
-                    worst.take(pixel, f64::from(*found) - wanted, error);
-                }
+    let mut worst = Worst::new(format!("composite, {wrong:?}"));
+    for (pixel, found) in pixels().zip(&picture.pixels) {
+        let (mut color, mut left, mut error) = ([0.0; 3], 1.0, 0.0);
+        let end = end_of(shot);
+        for met in met(shot, points, pixel, wrong) {
+            let value = f64::from(points.values()[met.index]);
+            let [r, g, b, extinction] = classify_by_points(&table, value);
+            let std = f64::from(points.stds()[met.index]);
+            let length = TAU.sqrt() * std * (std / met.std_of_peak).powi(2);
+            let depth = extinction * length * met.share_within(end);
+            let opacity = -(-depth).exp_m1();
+            for (sum, c) in color.iter_mut().zip([r, g, b]) {
+                *sum += left * opacity * c;
             }
-            worst.assert_holds();
+            left *= 1.0 - opacity;
+            // Of the depth: of its factors, which are 8 ulp of colour points and their exponents beside the share;
+            // 1 - e^-x, with its exponential: 4 ulp of 1; what it is added to and multiplied with: one each of at
+            // most 1.
+            error += extinction * length * met.share_error(end) + 8.0 * EPS * depth + 6.0 * EPS;
+        }
+        let wanted = [color[0], color[1], color[2], 1.0 - left];
+        for (found, wanted) in found.iter().zip(wanted) {
+            worst.take(pixel, f64::from(*found) - wanted, error);
+        }
+    }
+    worst
+}
+
+#[test]
+fn a_composite_is_that_of_all_points_by_depth() {
+    let points = with_ties(&cloud(400, 4));
+    for shot in &shots(Mode::Composite) {
+        let is_perspective = shot.camera.projection.is_perspective();
+        for (name, picture) in pictures(shot, &points, &[]) {
+            println!("{name}:");
+            check_composite(shot, &points, &picture, None).assert_holds();
+            let wrong = [
+                Wrong::KeptPeak,
+                Wrong::WideningAlone,
+                Wrong::BoxOfCentre,
+                Wrong::BackToFront,
+                Wrong::LastOfTies,
+            ];
+            // From infinitely far away both are one order.
+            let of_an_eye = [Wrong::ByDistance].into_iter().filter(|_| is_perspective);
+            for wrong in wrong.into_iter().chain(of_an_eye) {
+                check_composite(shot, &points, &picture, Some(wrong)).assert_caught();
+            }
         }
     }
 }
@@ -301,7 +386,7 @@ fn extremes_are_those_of_points_within_two_deviations() {
             for (name, picture) in pictures(shot, &points, &[LayerKind::Value]) {
                 let mut drawn = 0;
                 for (pixel, &found) in pixels().zip(values(&picture)) {
-                    let all = met(shot, &points, pixel);
+                    let all = met(shot, &points, pixel, None);
                     let extreme = |within: f64| {
                         let inside = all.iter().filter(|met| met.off + within * met.blur <= 2.0);
                         let values = inside.map(|met| points.values()[met.index]);
@@ -322,41 +407,6 @@ fn extremes_are_those_of_points_within_two_deviations() {
             }
         }
     }
-}
-
-/// One point somewhere in a pixel, its X-ray added up over all pixels: the error in parts.
-fn error_of_mass(std_pixels: f64, low_pass: f64, seed: u32) -> f64 {
-    let mut unit = random(seed);
-    let [mut shot, ..] = shots(Mode::Xray);
-    shot.settings.splat.low_pass = low_pass;
-    let pixel = 13.0 / f64::from(EXTENT[1]);
-    let place = dvec3(5.0, 5.0, 5.0) + pixel * dvec3(unit(), unit(), unit());
-    let stds = Some(vec![(std_pixels * pixel) as f32]);
-    let points = Points::new(vec![place], vec![3.0], stds, Some(vec![0.7])).expect("a point");
-    let mut worst = 0.0f64;
-    for (_, picture) in pictures(&shot, &points, &[LayerKind::Value]) {
-        let sum: f64 = values(&picture)
-            .iter()
-            .filter(|v| !v.is_nan())
-            .map(|&v| f64::from(v))
-            .sum();
-        worst = worst.max((sum * pixel * pixel / 2.1 - 1.0).abs());
-    }
-    worst
-}
-
-#[test]
-fn the_mass_of_a_point_does_not_depend_on_where_pixels_are() {
-    for (seed, std_pixels) in [0.01, 0.3, 0.75, 1.0, 1.7].into_iter().enumerate() {
-        // Poisson's sum: 4 e^(-2 pi^2 0.75^2), 6e-5; the rim that is cut off: 2^-20; rounding.
-        let error = error_of_mass(std_pixels, 0.75, seed as u32 + 1);
-        // 16 ulp: of terms and factors; the rounding of places moves all of them alike.
-        let allowed = 4.0 * (-2.0 * std::f64::consts::PI.powi(2) * 0.75f64.powi(2)).exp();
-        let allowed = 1.01 * allowed + (-20f64).exp2() + 16.0 * EPS;
-        assert!(error < allowed, "{std_pixels}: {error} {allowed}");
-    }
-    let thin = (1..9).map(|seed| error_of_mass(0.01, 0.5, seed));
-    assert!(thin.fold(0.0, f64::max) > 1e-2, "half a pixel is too thin");
 }
 
 #[test]

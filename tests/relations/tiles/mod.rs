@@ -12,6 +12,7 @@ use stratavox::gpu::Caps;
 use stratavox::offscreen::Renderer;
 use stratavox::picture::{LayerKind, Picture};
 use stratavox::scene::Scene;
+use stratavox::technique::splat::Sheets;
 use stratavox::technique::{
     AmbientOcclusion, Filter, GradientStorage, Jitter, Lattice, Level, Light, Mode, Order, PerMode,
     Settings, Shading, Shadows, Technique,
@@ -158,10 +159,10 @@ fn every_mode_of_the_ray_caster_is_the_same_in_parts() {
 }
 
 #[test]
-fn so_are_jittered_rays_several_rays_a_pixel_slabs_planes_and_exact_maxima() {
+fn so_are_jittered_rays_several_rays_a_pixel_slabs_planes_splats_and_exact_maxima() {
     let volume = small();
     type Change<'a> = (&'a str, &'a dyn Fn(&mut Settings));
-    let changes: [Change; 9] = [
+    let changes: [Change; 13] = [
         ("jitter", &|s| {
             s.lattice = Lattice::Jitter;
             s.jitter = Jitter { seed: 3, frame: 5 };
@@ -177,6 +178,19 @@ fn so_are_jittered_rays_several_rays_a_pixel_slabs_planes_and_exact_maxima() {
         ("a warp of maxima", &|s| {
             s.technique = Technique::ShearWarp;
             s.mode = Mode::Mip;
+        }),
+        ("splats", &|s| s.technique = Technique::Splat),
+        ("splats in slices", &|s| {
+            s.technique = Technique::Splat;
+            s.splat.sheets = Sheets::Axis;
+        }),
+        ("a maximum of splats", &|s| {
+            s.technique = Technique::Splat;
+            s.mode = Mode::Mip;
+        }),
+        ("sums of splats", &|s| {
+            s.technique = Technique::Splat;
+            s.mode = Mode::Xray;
         }),
         ("an exact maximum", &|s| {
             s.mode = Mode::Mip;

@@ -1,7 +1,7 @@
 //! The relations, and for which pictures each holds.
 
 use super::super::ground::Placement;
-use crate::technique::{Mode, Order};
+use crate::technique::{Mode, Order, Technique};
 
 /// What is done to a picture that leaves it as it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,6 +11,8 @@ pub enum Kind {
     WithLayers,
     InSmallSubmissions,
     Skipped,
+    SkippedByOctree,
+    SkippedByRuns,
     InBricks,
     LitInBricks,
     PermutedColors,
@@ -29,11 +31,13 @@ pub enum Kind {
 
 impl Kind {
     /// By the words of names.
-    pub const ALL: [(&str, Self); 18] = [
+    pub const ALL: [(&str, Self); 20] = [
         ("repeated", Self::Repeated),
         ("with_layers", Self::WithLayers),
         ("in_small_submissions", Self::InSmallSubmissions),
         ("skipped", Self::Skipped),
+        ("skipped_by_octree", Self::SkippedByOctree),
+        ("skipped_by_runs", Self::SkippedByRuns),
         ("in_bricks", Self::InBricks),
         ("lit_in_bricks", Self::LitInBricks),
         ("permuted_colors", Self::PermutedColors),
@@ -57,6 +61,9 @@ impl Kind {
         let is_fixed = placement.is_fixed();
         match self {
             Self::Skipped => true,
+            Self::SkippedByOctree | Self::SkippedByRuns => {
+                is_composite && placement.technique == Technique::Raycast
+            }
             Self::InBricks => is_composite || is_xray || mode == Mode::Mip || mode == Mode::Lmip,
             Self::LitInBricks => is_composite,
             Self::Repeated => is_composite || is_xray,
@@ -86,6 +93,11 @@ impl Kind {
         )
     }
 
+    /// Whether empty space is that of single voxels.
+    pub fn is_by_voxels(self) -> bool {
+        matches!(self, Self::SkippedByOctree | Self::SkippedByRuns)
+    }
+
     /// Whether a picture of bricks stands in it.
     pub fn is_of_bricks(self) -> bool {
         matches!(self, Self::InBricks | Self::LitInBricks)
@@ -99,6 +111,8 @@ impl Kind {
                 | Self::WithLayers
                 | Self::InSmallSubmissions
                 | Self::Skipped
+                | Self::SkippedByOctree
+                | Self::SkippedByRuns
                 | Self::InBricks
                 | Self::LitInBricks
                 | Self::PermutedColors

@@ -3,7 +3,7 @@
 //! | relation | allowed |
 //! |---|---|
 //! | the same picture twice; with other layers asked for; in small submissions; in bricks, lit too | nothing |
-//! | empty space skipped and not, in every mode | nothing |
+//! | empty space skipped and not, in every mode; by macro cells, by an octree of voxels and by runs of them | nothing |
 //! | colours of the function permuted, and the picture's | nothing |
 //! | values times 4 and the function's; the world twice as large | nothing: powers of two round nothing |
 //! | MIDA of gamma -1 and compositing; LMIP of no threshold and MIP | nothing |

@@ -11,7 +11,7 @@ use crate::conformance::test_bed::TestBed;
 use crate::gpu::Caps;
 use crate::picture::{ColorSpace, LayerKind, Picture};
 use crate::technique::pathtrace::PathTracing;
-use crate::technique::{Filter, Lattice, Level, Light, Mode, Order, Shading};
+use crate::technique::{Filter, Lattice, Level, Light, Mode, Order, Shading, SkipBy};
 use crate::transfer::{ColorPoint, OpacityPoint, Phase, TransferFunction};
 use glam::{DAffine3, DVec3, dvec3};
 
@@ -99,6 +99,10 @@ pub fn measure(
         true => of_paths(&shot),
         false => shot,
     };
+    let (shot, field): (_, fn(DVec3) -> f64) = match kind.is_by_voxels() {
+        true => (of_long_rows(shot), islands),
+        false => (shot, ground::waves),
+    };
     let mut function = ground::ramps();
     if mode == Mode::Xray {
         // Integrals of 20 voxels: not all of them at the end of the function.
@@ -108,7 +112,7 @@ pub fn measure(
         points.iter_mut().for_each(|point| point.value *= 16.0);
     }
     let sight = Sight {
-        numbers: Numbers::of(&shot, ground::waves),
+        numbers: Numbers::of(&shot, field),
         shot,
         function,
     };
@@ -127,6 +131,30 @@ pub fn measure(
         false => both_running_errors(bed, &sight.shot)?,
     };
     Ok(compare(kind, &sight.shot, bound, first, second))
+}
+
+/// Rows of three words of 32 voxels, of the last of which some bits are no voxels, which rays go along: of an eye from the end to
+/// the beginning, parallel ones the other way.
+fn of_long_rows(mut shot: PictureCase) -> PictureCase {
+    shot.grid.dims = [75, 13, 11];
+    shot.camera = ground::oblique_camera(&shot.grid, shot.camera.projection);
+    let size = (shot.grid.world_from_voxel.matrix3 * shot.grid.far_corner()).length();
+    let side = match &mut shot.camera.projection {
+        Projection::Orthographic { view_height } => {
+            *view_height = 0.7 * size;
+            -1.0
+        }
+        _ => 1.0,
+    };
+    shot.camera.eye = shot.camera.target + side * size * dvec3(1.6, -0.25, 0.15);
+    // They fill the picture.
+    shot.camera.zoom = 2.5;
+    shot
+}
+
+/// Waves of which half are under water: voxels that matter with wide gaps between.
+fn islands(p: DVec3) -> f64 {
+    (2.0 * ground::waves(1.6 * p) - 1.0).max(0.0)
 }
 
 /// White lights, surfaces and grey solid ones, four paths a pixel.
@@ -158,6 +186,8 @@ fn same_bits(bed: &mut TestBed, kind: Kind, sight: &Sight) -> Result<(Rough, Rou
     let settings = &mut other.shot.settings;
     match kind {
         Kind::Skipped => settings.skip = !settings.skip,
+        Kind::SkippedByOctree => settings.empty_space = SkipBy::Octree,
+        Kind::SkippedByRuns => settings.empty_space = SkipBy::Runs,
         Kind::PermutedColors => {
             let points = &mut other.function.color;
             points
