@@ -412,8 +412,8 @@ pub const FAULTS: &[(&str, Fault, &str)] = &[
         "sums of points take how much matter they are, not how much a ray meets",
         Shader(
             "splat_points_projection.wgsl",
-            "point.density * exp",
-            "point.length * exp",
+            "view_points.all[point].density * exp",
+            "view_points.all[point].length * exp",
         ),
         "splat.points.xray.small.perspective",
     ),
