@@ -205,24 +205,25 @@ fn what_does_not_go_together_has_a_hint_that_helps() {
     folder
         .run("convert phantom:sphere,n=8 -o l.nrrd --type u8 --window 0,1")
         .assert_done();
-    let mut refused = vec![(
-        "phantom:sphere,n=8 --aperture-radius 1 --projection orthographic".to_owned(),
-        "--technique pathtrace",
-        "--projection perspective, or leave out --aperture-radius",
-    )];
-    for (how, instead) in [
-        ("--technique pathtrace", "--technique raycast"),
-        (SINGLE, "without --scattering single"),
-    ] {
-        for several in [
-            "phantom:sphere,n=8 --with l.nrrd",
-            "phantom:sphere,n=8 --labels l.nrrd",
-            "phantom:cells,n=8 --component all",
-        ] {
-            refused.push((several.to_owned(), how, instead));
-        }
-    }
-    for (words, how, hint) in refused {
+    let paths = "--technique pathtrace";
+    let single = (SINGLE, "without --scattering single");
+    let refused = [
+        (
+            "phantom:sphere,n=8 --aperture-radius 1 --projection orthographic",
+            (
+                paths,
+                "--projection perspective, or leave out --aperture-radius",
+            ),
+        ),
+        (
+            "phantom:sphere,n=9 --with l.nrrd",
+            (paths, "--technique raycast"),
+        ),
+        ("phantom:sphere,n=8 --with l.nrrd", single),
+        ("phantom:sphere,n=8 --labels l.nrrd", single),
+        ("phantom:cells,n=8 --component all", single),
+    ];
+    for (words, (how, hint)) in refused {
         let ran = folder.run(&format!("render {words} {how} -o a.png {SMALL}"));
         ran.assert_refused(2, &["hint: ", hint]);
         assert!(!ran.err.contains("docs/matrix.md"), "{ran:#?}");
