@@ -65,10 +65,20 @@ fn a_scene_of_a_forecast_has_a_bar_and_its_date_and_is_what_its_flags_show() {
             .err
             .lines()
             .find_map(|line| Some(line.split_once(&word_of)?.1));
-        let flags = said.unwrap_or_else(|| panic!("{shown:#?}"));
-        folder
-            .run(&format!("render {fixed} {flags} -o flags.npy --force"))
-            .assert_done();
+        let said = said.unwrap_or_else(|| panic!("{shown:#?}"));
+        // A title has spaces, and is told in quotes.
+        let (flags, marks) = said.split_once(" --annotate").expect("marks");
+        let marks = match marks.trim().trim_matches('\'') {
+            "" => "bar,time,orientation,scale",
+            marks => marks,
+        };
+        let draw = |marks: &str, out: &str| {
+            let mut command = folder.command(&format!("render {fixed} {flags} -o {out} --force"));
+            command.arg(format!("--annotate={marks}"));
+            let ran = command.output().expect("the program runs");
+            assert!(ran.status.success(), "{ran:?}");
+        };
+        draw(marks, "flags.npy");
         for kind in ["", ".annotation"] {
             let read =
                 |name: &str| fs::read(folder.path(&format!("{name}{kind}.npy"))).expect(name);
@@ -81,10 +91,8 @@ fn a_scene_of_a_forecast_has_a_bar_and_its_date_and_is_what_its_flags_show() {
         // Without the bar, and without the date, the layer is another where they stand.
         let layer = pixels(&folder, &format!("{word}.annotation.npy"));
         let without = |mark: &str| {
-            let marks = ["bar", "time", "orientation", "scale"].into_iter();
-            let others: Vec<&str> = marks.filter(|other| *other != mark).collect();
-            let words = format!("{flags}={} -o without.npy --force", others.join(","));
-            folder.run(&format!("render {fixed} {words}")).assert_done();
+            let others: Vec<&str> = marks.split(',').filter(|other| *other != mark).collect();
+            draw(&others.join(","), "without.npy");
             pixels(&folder, "without.annotation.npy")
         };
         let (bar, [left, ..]) = difference(&layer, &without("bar"));

@@ -192,7 +192,7 @@ const FIELD: &str = "points are cast by rays, in --mode composite, mip, minip, a
                      them";
 
 /// What paths go with.
-const PATHS: &str = "--technique pathtrace is for --mode composite of one volume of numbers, by --filter linear and nearest, with lights \
+const PATHS: &str = "--technique pathtrace is for --mode composite of volumes of numbers, by --filter linear and nearest, with lights \
                      (--light, --environment) that need no --shading: leave out the other flag";
 
 /// Whether settings have the ways to sample that are asked for.

@@ -35,6 +35,8 @@ pub fn read(
     let components = components(variables, words, progress)?;
     let whole = components.east.0.header().clone();
     check_grids(&components, &whole)?;
+    // Before all that is told of the file: a wind that is none is told alone.
+    let (units, up) = units(&components, &whole, progress)?;
     let times = match at {
         Some(time) => between(time),
         None => {
@@ -52,7 +54,6 @@ pub fn read(
     for note in header.notes.iter().filter(is_new) {
         progress.note(note);
     }
-    let (units, up) = units(&components, &header, progress)?;
     // Of reduced columns the means.
     let columns = |all: Vec<f64>| match factor {
         1 => all,
