@@ -102,8 +102,9 @@ fn a_scene_of_a_forecast_has_a_bar_and_its_date_and_is_what_its_flags_show() {
             "{word}: a bar of {bar} pixels from {left} on"
         );
         let (date, [_, _, right, bottom]) = difference(&layer, &without("time"));
+        // Under a title of two lines, of 11 pixels and what is between them each.
         assert!(
-            date > 300 && right < SIZE[0] && bottom < SIZE[1] / 4,
+            date > 300 && right < SIZE[0] && bottom < SIZE[1] / 3,
             "{word}: a date of {date} pixels down to {bottom}"
         );
     }
