@@ -109,9 +109,7 @@ impl InputFlags {
         };
         Ok(points::open_points(path, &columns, limits)?)
     }
-}
 
-impl InputFlags {
     /// `word` beside an input that was not found to be points.
     fn not_of_points(&self, word: &str) -> Error {
         let is_array = self

@@ -76,6 +76,7 @@ pub(super) struct Drawn {
 /// Spheres along a way of median length, and along all of them.
 const SPHERES: f64 = 16.0;
 const MOST_SPHERES: f64 = 200_000.0;
+const DAY: f64 = 86_400.0;
 /// Round times over which a file of the Earth counts, seconds.
 const ROUND: [f64; 14] = [
     60.0, 120.0, 300.0, 600.0, 900.0, 1800.0, 3600.0, 7200.0, 10_800.0, 21_600.0, 43_200.0,
@@ -100,17 +101,15 @@ impl Ways {
         let all: f64 = lengths.iter().sum();
         let wanted = (median / SPHERES).max(all / MOST_SPHERES);
         let of_clock = ROUND.iter().rev().find(|&&round| round <= wanted);
-        match of_clock.filter(|_| is_earth) {
-            Some(&round) => round,
-            None => {
-                let ten = 10.0_f64.powf(wanted.log10().floor());
-                let steps = [5.0, 2.0, 1.0].map(|n| n * ten);
-                steps
-                    .into_iter()
-                    .find(|&step| step <= wanted)
-                    .unwrap_or(ten)
-            }
-        }
+        let unit = match of_clock.filter(|_| is_earth) {
+            Some(&round) if wanted < 10.0 * DAY => return round,
+            Some(_) => DAY,
+            None => 1.0,
+        };
+        let ten = unit * 10.0_f64.powf((wanted / unit).log10().floor());
+        let steps = [5.0, 2.0, 1.0].map(|n| n * ten);
+        let mut steps = steps.into_iter();
+        steps.find(|&step| step <= wanted).unwrap_or(ten)
     }
 
     /// Seconds from the first time to the last.
@@ -303,6 +302,7 @@ mod tests {
             (16.0 * 3700.0, false, "2000 s"),
             (16.0 * 899.0, true, "10 min"),
             (16.0 * 0.06, true, "0.05 s"),
+            (16.0 * 347.0 * DAY, true, "200 d"),
         ] {
             let found = ways(length).time_apart(is_earth);
             assert_eq!(in_words(found), wanted, "{length}");

@@ -81,6 +81,13 @@ impl DrawnLines {
                         places.len(),
                         beside(bounds, header, stretch)
                     ));
+                    let left_out = file.points().len() - places.len();
+                    if left_out > 0 {
+                        progress.note(&format!(
+                            "with {}, {left_out} points have no place on the map of the volume, and are left out",
+                            word.name()
+                        ));
+                    }
                     let legend = legend(word, &points, file);
                     let planes = scene.sampling.clip_planes()?;
                     let is_kept = |place: DVec3| {

@@ -136,16 +136,15 @@ fn check_lines(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
             "leave out --technique",
         );
     }
-    if let (true, Err(problem)) = (settings.splat.of_points, check_geometry(settings)) {
-        return refused(
-            &format!("ends rays and slices, and these do not end: {problem}"),
-            "--points-as spheres, grid or field",
-        );
-    }
     if let Err(problem) = check_geometry(settings) {
         return refused(
             &format!("ends rays and slices, and these do not end: {problem}"),
-            "--technique raycast, slices-2d or slices-3d, without --shadows half-angle and --aa-uneven",
+            match settings.splat.of_points {
+                true => "--points-as spheres, grid or field",
+                false => {
+                    "--technique raycast, slices-2d or slices-3d, without --shadows half-angle and --aa-uneven"
+                }
+            },
         );
     }
     let stands_elsewhere = [
