@@ -361,10 +361,7 @@ fn a_file_that_is_cut_anywhere_is_refused() {
 
 #[test]
 fn geographic_lines_survive_mutations() {
-    let count: u64 = match std::env::var("STRATAVOX_MUTATIONS") {
-        Ok(number) => number.parse().expect("STRATAVOX_MUTATIONS is a number"),
-        Err(_) => 20_000,
-    };
+    let count = crate::survive::mutations();
     let folder = Folder::new();
     let (mut refused, mut given, mut most) = (0_u64, 0_u64, 0.0_f64);
     let bases = bases();

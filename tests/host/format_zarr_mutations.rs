@@ -64,10 +64,7 @@ fn read_all(store: &Store) -> Result<u64, ReadError> {
 
 #[test]
 fn zarr_survives_mutations() {
-    let count: u64 = match std::env::var("STRATAVOX_MUTATIONS") {
-        Ok(number) => number.parse().expect("STRATAVOX_MUTATIONS is a number"),
-        Err(_) => 20_000,
-    };
+    let count = crate::survive::mutations();
     let bases = BASES.map(|name| (name, crate::zarr::files(name), Store::of(name)));
     for (name, _, store) in &bases {
         read_all(store).unwrap_or_else(|e| panic!("{name}: {e}"));

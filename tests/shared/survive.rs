@@ -44,12 +44,18 @@ pub fn read_all(folder: &Folder, base: &Base) -> Result<u64, ReadError> {
     Ok(voxels)
 }
 
+/// How many mutations of each reader there are: `STRATAVOX_MUTATIONS`, else 5 000, and 20 000 in long sweeps.
+pub fn mutations() -> u64 {
+    match std::env::var("STRATAVOX_MUTATIONS") {
+        Ok(number) => number.parse().expect("STRATAVOX_MUTATIONS is a number"),
+        Err(_) if crate::sweep::is_long() => 20_000,
+        Err(_) => 5_000,
+    }
+}
+
 /// Mutates the bases of one reader in turn.
 pub fn survive(reader: &str, bases: &[Base]) {
-    let count: u64 = match std::env::var("STRATAVOX_MUTATIONS") {
-        Ok(number) => number.parse().expect("STRATAVOX_MUTATIONS is a number"),
-        Err(_) => 20_000,
-    };
+    let count = mutations();
     let folder = Folder::new();
     let mut whole = Vec::new();
     for base in bases {

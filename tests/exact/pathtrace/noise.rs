@@ -91,7 +91,7 @@ fn a_picture_ends_where_its_noise_is_low() {
     let mut renderer = Renderer::new(device(), &volume).expect("a renderer");
     let mut of = |path: PathTracing| {
         let settings = settings(path);
-        let scene = scene(&volume, &function, &camera, &settings, [60, 50]);
+        let scene = scene(&volume, &function, &camera, &settings, [42, 35]);
         let picture = renderer.render(&scene, &[]).expect("a picture").picture;
         (picture, renderer.traced())
     };

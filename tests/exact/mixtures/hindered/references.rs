@@ -12,8 +12,10 @@ fn without_light(shot: &PictureCase) -> PictureCase {
     })
 }
 
-/// Shots whose technique `has_it`, as their references, and darker than without.
+/// Shots whose technique `has_it`, as their references, and darker than without: the third `turn` of the pipelines, all of them in
+/// long sweeps. Drivers take seconds to compile each.
 fn check(
+    turn: usize,
     volumes: &[&Volume],
     transfer: &TransferFunction,
     beside: Beside,
@@ -22,7 +24,8 @@ fn check(
 ) {
     let mut renderer = renderer(volumes);
     let shots = dim_shots(Mode::Composite).filter(|shot| has_it(shot.settings.technique));
-    for (i, shot) in shots.enumerate() {
+    let is_drawn = |i: usize| sweep::is_long() || (i / 2 + i / 6) % 3 == turn;
+    for (i, shot) in shots.enumerate().filter(|(i, _)| is_drawn(*i)) {
         let filter = [Filter::Linear, Filter::Nearest][i % 2];
         let shot = shot.with(|settings| settings.filter = filter);
         let dark = scene(&shot, volumes[0], transfer, beside);
@@ -53,14 +56,18 @@ fn channels_labels_and_opacities_are_dimmed_as_their_references() {
     let numbers = channel(&second, &functions[1], Role::Numbers);
     let map = channel(&labels, &names, Role::Labels);
     let opacity = channel(&second, &functions[1], Role::Opacity);
-    for (channels, what) in [
+    for (turn, (channels, what)) in [
         (&[numbers][..], "channels"),
         (&[map], "labels"),
         (&[opacity, map], "opacity and labels"),
-    ] {
+    ]
+    .into_iter()
+    .enumerate()
+    {
         let others = channels.iter().map(|channel| channel.volume);
         let volumes: Vec<_> = [&first].into_iter().chain(others).collect();
         check(
+            turn,
             &volumes,
             &functions[0],
             Beside::Channels(channels),
@@ -87,6 +94,7 @@ fn volumes_on_grids_of_their_own_are_dimmed_as_their_references() {
     let has_places = |technique| technique != Technique::Slices2d;
     let beside = Beside::Channels(&channels);
     check(
+        0,
         &[&first, &second],
         &functions[0],
         beside,
@@ -102,10 +110,11 @@ fn colours_are_dimmed_as_their_references() {
     let blue = volume_of(GRID().dims, sheared_affine(), |p| 1.0 - waves(p));
     let alpha = volume_of(GRID().dims, sheared_affine(), |p| 0.3 + 0.7 * waves(p));
     let transfer = ramps();
-    for others in [&[&green, &blue][..], &[&green, &blue, &alpha]] {
+    for (turn, others) in [(1, &[&green, &blue][..]), (2, &[&green, &blue, &alpha])] {
         let volumes: Vec<&Volume> = [&[&red], others].concat();
         let what = format!("{} colours", volumes.len());
-        check(&volumes, &transfer, Beside::Colors(others), any, &what);
+        let beside = Beside::Colors(others);
+        check(turn, &volumes, &transfer, beside, any, &what);
     }
 }
 
