@@ -202,7 +202,7 @@ impl Annotation {
             && let Some(text) = moment::words(&self.facts, seen.time)
         {
             moment::draw(sheet, [em, baseline], &text);
-            if em + sheet.width(&text, 1.0) > column(width, em) {
+            if em + moment::widest(sheet, &self.facts, &text) > column(width, em) {
                 top = baseline + 0.4 * em;
             }
         }
