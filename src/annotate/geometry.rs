@@ -1,6 +1,12 @@
 //! What geometry beside a volume means: bars for its colours, sentences for its symbols.
 
-use super::{Error, Seen, bar::Bar, degrees::DegreeLine, degrees::meets, sheet::Sheet};
+use super::{
+    Error, Seen,
+    bar::{Bar, Room, Slot},
+    degrees::DegreeLine,
+    degrees::meets,
+    sheet::Sheet,
+};
 use crate::{
     figure::{Anchor, Mark},
     transfer::TransferFunction,
@@ -39,16 +45,17 @@ const HIGHEST: usize = 5;
 /// How much of the picture's width a sentence takes.
 const WIDEST: f64 = 0.55;
 
-/// Which of so many bars that of the volume is.
-pub(super) fn slot(seen: &Seen) -> [usize; 2] {
-    [0, count(seen).max(1)]
+/// Where the bar of the volume stands.
+pub(super) fn slot(sheet: &Sheet, seen: &Seen, room: Room) -> Option<Slot> {
+    room.slot(0, count(seen).max(1), sheet.size()[1], sheet.em)
 }
 
 fn own(seen: &Seen) -> usize {
     usize::from(seen.function.is_some() || seen.projected.is_some())
 }
 
-fn count(seen: &Seen) -> usize {
+/// How many bars a picture has.
+pub(super) fn count(seen: &Seen) -> usize {
     let others = [
         seen.geometry.lines,
         seen.geometry.points,
@@ -58,7 +65,7 @@ fn count(seen: &Seen) -> usize {
 }
 
 /// A bar each of lines, of points and of the ground, below that of the volume; where they begin.
-pub(super) fn bars(sheet: &mut Sheet, seen: &Seen) -> Result<Option<f64>, Error> {
+pub(super) fn bars(sheet: &mut Sheet, seen: &Seen, room: Room) -> Result<Option<f64>, Error> {
     let legends = [
         seen.geometry.lines,
         seen.geometry.points,
@@ -73,7 +80,7 @@ pub(super) fn bars(sheet: &mut Sheet, seen: &Seen) -> Result<Option<f64>, Error>
             unit: legend.unit.as_deref(),
             is_log: false,
             levels: Vec::new(),
-            slot: [own(seen) + nth, count(seen)],
+            slot: room.slot(own(seen) + nth, count(seen), sheet.size()[1], sheet.em),
         };
         let own = bar.draw(sheet)?;
         left = [left, own].into_iter().flatten().reduce(f64::min);
@@ -81,8 +88,8 @@ pub(super) fn bars(sheet: &mut Sheet, seen: &Seen) -> Result<Option<f64>, Error>
     Ok(left)
 }
 
-/// The sentences, in the lower right, so many em above the lower side.
-pub(super) fn words(sheet: &mut Sheet, seen: &Seen, below: f64) {
+/// The lines of the sentences with their baselines, from the lowest up, in the lower right, so many em above the lower side.
+pub(super) fn words(sheet: &Sheet, seen: &Seen, below: f64) -> Vec<(f64, String)> {
     let ([width, height], em) = (sheet.size(), sheet.em);
     let words = seen.geometry.words.iter().map(|words| unparted(words));
     let lines = words.flat_map(|words| sheet.wrapped(&words, 1.0, WIDEST * width, 4));
@@ -100,9 +107,15 @@ pub(super) fn words(sheet: &mut Sheet, seen: &Seen, below: f64) {
         })
     };
     let up = (0..HIGHEST).find(is_free).unwrap_or(0);
-    for (at, line) in lines.iter().rev().enumerate() {
-        let y = baseline(at, up);
-        sheet.text_on_ground([width - em, y], line, 1.0, Anchor::End);
+    let placed = lines.into_iter().rev().enumerate();
+    placed.map(|(at, line)| (baseline(at, up), line)).collect()
+}
+
+/// Writes them.
+pub(super) fn write(sheet: &mut Sheet, lines: &[(f64, String)]) {
+    let right = sheet.size()[0] - sheet.em;
+    for (y, line) in lines {
+        sheet.text_on_ground([right, *y], line, 1.0, Anchor::End);
     }
 }
 

@@ -35,7 +35,7 @@ use crate::{
     transfer::{Classified, TransferFunction, Window},
     volume::Grid,
 };
-use bar::{Bar, legend};
+use bar::{Bar, Room, column, legend};
 use geometry::APART;
 use projector::Projector;
 use sheet::Sheet;
@@ -187,26 +187,37 @@ impl Annotation {
     fn words(&self, sheet: &mut Sheet, projector: &Projector, seen: &Seen) -> Result<(), Error> {
         let ([width, height], em) = (sheet.size(), sheet.em);
         let mut right = width;
-        if self.marks.bar {
-            let lefts = [self.colors(sheet, seen)?, geometry::bars(sheet, seen)?];
-            right = lefts.into_iter().flatten().fold(right, f64::min);
-            let below = self.base() + APART * self.level_lines(sheet, seen).len() as f64;
-            geometry::words(sheet, seen, below);
-        }
         let mut baseline = 1.6 * em;
+        // Bars begin below words that reach over them.
+        let mut top = 0.0;
         if let Some(title) = &self.marks.title {
             let title = sheet.shortened(title, 1.3, width - 2.0 * em);
             sheet.text_on_ground([em, baseline + 0.2 * em], &title, 1.3, Anchor::Start);
+            if em + sheet.width(&title, 1.3) > column(width, em) {
+                top = baseline + 0.6 * em;
+            }
             baseline += 1.8 * em;
         }
         if self.marks.time
             && let Some(text) = moment::words(&self.facts, seen.time)
         {
             moment::draw(sheet, [em, baseline], &text);
+            if em + moment::widest(sheet, &self.facts, &text) > column(width, em) {
+                top = baseline + 0.4 * em;
+            }
         }
         let mut bottom = height - em;
         if self.marks.scale {
             bottom = place::scale(sheet, projector, &self.facts, seen.height_factor);
+        }
+        if self.marks.bar {
+            let (room, lines) = self.room(sheet, seen, top);
+            let lefts = [
+                self.colors(sheet, seen, room)?,
+                geometry::bars(sheet, seen, room)?,
+            ];
+            right = lefts.into_iter().flatten().fold(right, f64::min);
+            geometry::write(sheet, &lines);
         }
         let has_letters = self.marks.orientation && self.facts.is_patient;
         if has_letters {
@@ -225,8 +236,34 @@ impl Annotation {
         Ok(())
     }
 
+    /// The rows that are left for bars below `top`, and the lines of sentences below them; none, where bars have no room beside
+    /// them.
+    fn room(&self, sheet: &Sheet, seen: &Seen, top: f64) -> (Room, Vec<(f64, String)>) {
+        let ([_, height], em) = (sheet.size(), sheet.em);
+        let levels = self.level_lines(sheet, seen).len();
+        let below = self.base() + APART * levels as f64;
+        let lines = geometry::words(sheet, seen, below);
+        let bars = geometry::count(seen);
+        // Words stand below the last of several.
+        let free = height - if bars > 1 { 3.0 * em } else { 0.0 };
+        let above = |baseline: f64| baseline - 1.3 * em;
+        let lowest = match levels {
+            0 => free,
+            _ => free.min(above(height - (below - APART) * em)),
+        };
+        let room = |bottom: f64| Room { top, bottom };
+        let Some((highest, _)) = lines.last() else {
+            return (room(lowest), lines);
+        };
+        let beside = room(lowest.min(above(*highest)));
+        match bars == 0 || beside.has(bars, em) {
+            true => (beside, lines),
+            false => (room(lowest), Vec::new()),
+        }
+    }
+
     /// The bar, or patches of colour; where it begins.
-    fn colors(&self, sheet: &mut Sheet, seen: &Seen) -> Result<Option<f64>, Error> {
+    fn colors(&self, sheet: &mut Sheet, seen: &Seen, room: Room) -> Result<Option<f64>, Error> {
         let facts = &self.facts;
         let Seen {
             settings, beside, ..
@@ -246,13 +283,13 @@ impl Annotation {
                     unit: unit.as_deref(),
                     is_log: self.is_log,
                     levels: Vec::new(),
-                    slot: geometry::slot(seen),
+                    slot: geometry::slot(sheet, seen, room),
                 }
                 .draw(sheet)?;
                 self.levels_below(sheet, seen);
                 return Ok(left);
             }
-            return self.surfaces(sheet, seen);
+            return self.surfaces(sheet, seen, room);
         }
         if matches!(beside, Beside::Colors(_)) || facts.is_color && !others.is_empty() {
             return Ok(None);
@@ -279,13 +316,13 @@ impl Annotation {
             unit: integral.as_deref().or(facts.unit.as_deref()),
             is_log: self.is_log,
             levels: Vec::new(),
-            slot: geometry::slot(seen),
+            slot: geometry::slot(sheet, seen, room),
         };
         bar.draw(sheet)
     }
 
     /// Marks on the bar where surfaces have the colours of a function, else a patch for each.
-    fn surfaces(&self, sheet: &mut Sheet, seen: &Seen) -> Result<Option<f64>, Error> {
+    fn surfaces(&self, sheet: &mut Sheet, seen: &Seen, room: Room) -> Result<Option<f64>, Error> {
         let levels = &seen.settings.per_mode.levels;
         if let Some(function) = seen.function {
             let is_of_function = levels.iter().all(|level| {
@@ -300,7 +337,7 @@ impl Annotation {
                     unit: self.facts.unit.as_deref(),
                     is_log: self.is_log,
                     levels: levels.iter().map(|level| level.value).collect(),
-                    slot: geometry::slot(seen),
+                    slot: geometry::slot(sheet, seen, room),
                 };
                 return bar.draw(sheet);
             }

@@ -6,6 +6,18 @@
 use super::{facts::Facts, sheet::Sheet};
 use crate::figure::Anchor;
 
+/// Pixels that the words of the first and the last time, and these, take at most: the same in all frames of a film.
+pub fn widest(sheet: &Sheet, facts: &Facts, text: &str) -> f64 {
+    let last = f64::from(facts.times.saturating_sub(1));
+    let ends = [0.0, last]
+        .into_iter()
+        .filter_map(|time| words(facts, time));
+    let even = |text: &str| text.replace(|c: char| c.is_ascii_digit(), "0");
+    let all = ends.chain([text.to_owned()]);
+    all.map(|text| sheet.width(&even(&text), 1.0))
+        .fold(0.0, f64::max)
+}
+
 /// What is written of time `time`, counted from 0; `None` where nothing is known.
 pub fn words(facts: &Facts, time: f64) -> Option<String> {
     let name = |time: f64| facts.time_names.get(time as usize);

@@ -83,7 +83,7 @@ pub struct Bench {
     #[arg(long, help_heading = "Run")]
     force: bool,
     /// No empty-space skipping: the picture is the same without
-    #[arg(long)]
+    #[arg(long, conflicts_with = "empty_space")]
     no_skip: bool,
 }
 

@@ -156,6 +156,15 @@ impl From<offscreen::Error> for Error {
                 message: error.to_string(),
                 hint: sample_limit::hint(&error),
             },
+            // A filter that a person asks for is refused before there is a picture.
+            offscreen::Error::Technique(technique::Error::NotFor {
+                wanted: "splatting",
+                found,
+                ..
+            }) if found == "the filter nearest" => Self::usage(
+                "--technique splat: the values are labels, and splats mix their neighbours: between two labels there is none",
+                "--technique raycast draws labels; --filter linear takes them for numbers",
+            ),
             offscreen::Error::Technique(error) => {
                 Self::usage(error.to_string(), technique_hints::hint(&error))
             }

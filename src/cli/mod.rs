@@ -25,6 +25,7 @@ mod help;
 mod histogram;
 mod info;
 mod inputs;
+mod intermediate;
 mod kept_samples;
 mod labels;
 mod line;

@@ -4,6 +4,7 @@ use super::{
     Error,
     annotation::{annotation, finish},
     flags::{Classification, Depth, InputFlags, PHANTOM, SceneFlags},
+    flow,
     kept_samples::{KeptSamples, PictureOf},
     load::open,
     look::{Chosen, Framing, Use, View, Views, prepared},
@@ -94,7 +95,7 @@ pub struct Render {
     #[arg(long, conflicts_with_all = ["level", "fit"], help_heading = "Run")]
     refine: bool,
     /// No empty-space skipping: slower, the same picture
-    #[arg(long)]
+    #[arg(long, conflicts_with = "empty_space")]
     no_skip: bool,
 }
 
@@ -227,12 +228,13 @@ impl Render {
         for note in idle.chain(view.notes.iter().cloned()) {
             progress.note(&note);
         }
-        let is_chosen = self.scene_file.is_none() && self.scene.sampling.aa.is_none();
-        if is_chosen && scene.has_lines() && scene.sampling.aa == Some(4) {
-            progress.note(
-                "four rays a pixel, for the edges of what lies beside the volume; --aa 1 sends one",
-            );
-        }
+        // A file says how many rays there are.
+        let said = match self.scene_file {
+            Some(_) => &scene,
+            None => &self.scene,
+        };
+        let of_lines = flow::notes(said, &scene, shown.lines(), &view.camera, extent_pixels);
+        of_lines.iter().for_each(|note| progress.note(note));
         let View {
             camera, settings, ..
         } = view;

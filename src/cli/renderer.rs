@@ -5,6 +5,7 @@ use super::{
     devices::driver_text,
     flags::Classification,
     flow::DrawnLines,
+    intermediate,
     memory::{DeviceMemory, DeviceRoom},
     progress::Progress,
     signals::Gate,
@@ -247,22 +248,24 @@ impl<'a> Renderer<'a> {
             None => offscreen::Renderer::with_kept(on, volumes)?,
         };
         let prepare_ms = device.found_ms + ms_since(start);
+        let most_bytes = renderer.device().gpu().limits().max_allocation_bytes;
         let start = Instant::now();
         let scene = job.scene(camera);
         if let Some(lines) = job.lines {
             let geometry = lines.geometry(camera, job.extent_pixels);
             renderer.set_geometry(Some(Arc::new(geometry)));
         }
-        renderer.upload(&scene)?;
+        let told = |error| intermediate::explained(error, &scene, most_bytes);
+        renderer.upload(&scene).map_err(told)?;
         let upload_ms = ms_since(start);
         let start = Instant::now();
-        renderer.prepare_pipelines(&scene)?;
+        renderer.prepare_pipelines(&scene).map_err(told)?;
         let pipelines_ms = ms_since(start);
         let start_of_space = Instant::now();
-        renderer.prepare_empty_space(&scene)?;
+        renderer.prepare_empty_space(&scene).map_err(told)?;
         let empty_space_ms = ms_since(start_of_space);
         if !scene.settings.mode.is_projection() {
-            renderer.prepare_light(&scene)?;
+            renderer.prepare_light(&scene).map_err(told)?;
         }
         Ok(Self {
             job,
@@ -403,7 +406,11 @@ impl<'a> Renderer<'a> {
         };
         self.put_lines(camera, extent_pixels);
         match &mut self.on_device {
-            Some(renderer) => Ok(renderer.render(&scene, &[])?.picture),
+            Some(renderer) => {
+                let most_bytes = renderer.device().gpu().limits().max_allocation_bytes;
+                let told = |error| intermediate::explained(error, &scene, most_bytes);
+                Ok(renderer.render(&scene, &[]).map_err(told)?.picture)
+            }
             None => self.reference(&scene),
         }
     }
@@ -451,7 +458,8 @@ impl<'a> Renderer<'a> {
         let lines = self.job.lines;
         let geometry = lines.map(|lines| lines.geometry(scene.camera, scene.extent_pixels));
         let picture = reference::render_with::<f32>(scene, geometry.as_ref());
-        Ok(picture.map_err(offscreen::Error::Technique)?)
+        // Images of the CPU have no limit of their own.
+        picture.map_err(|error| intermediate::explained(error.into(), scene, u64::MAX))
     }
 
     /// Lines are as wide as pixels of the camera say.
@@ -465,7 +473,9 @@ impl<'a> Renderer<'a> {
         let scene = self.job.scene(camera);
         self.put_lines(camera, self.job.extent_pixels);
         if let Some(renderer) = &mut self.on_device {
-            let rendered = renderer.render(&scene, layers)?;
+            let most_bytes = renderer.device().gpu().limits().max_allocation_bytes;
+            let told = |error| intermediate::explained(error, &scene, most_bytes);
+            let rendered = renderer.render(&scene, layers).map_err(told)?;
             return Ok(Frame {
                 picture: rendered.picture,
                 gpu_ms: rendered.gpu_ms,

@@ -34,7 +34,7 @@ pub fn hint(error: &Error) -> Cow<'static, str> {
 }
 
 /// To two digits, never up: what is said has to do.
-fn rounded_down(number: f64) -> f64 {
+pub(super) fn rounded_down(number: f64) -> f64 {
     let digits = 1.0 - number.log10().floor();
     // A power of ten that is whole divides without an error that would show.
     let scale = 10_f64.powf(digits.max(0.0));

@@ -184,7 +184,7 @@ mod tests {
         --target 1,2,3 --up 0,0,1 --view-height 77 --exaggerate 3 --size 64x48 --background 0,0.1,1 --aov value,depth --bit-depth 16 \
         --device cpu --component 1 --raw 2x2x2,u8 --variable T --channel 0,color=red,window=0:3 --channel 2 \
         --lmip-threshold 5 --mida-gamma -0.5 --attenuation 3 --depth-cue 0.4 --exact-maximum --iso -3,4.5 \
-        --iso-color red,0:0.5:1 --iso-opacity 0.3,1 --labels l.nrrd --opacity-variable q --opacity-component 2 --opacity-from o.nrrd --opacity-window -1,2 --with p,q.nrrd,preset=pet,window=0:5 --with phantom:gauss,n=32,color=red --label-tf l.txt --label-show 1,3-5 --map coast --coast c.shp --point-light -1,2,3.5,1,0.5,0.25,4 --disc-light 1,2,3,4";
+        --iso-color red,0:0.5:1 --iso-opacity 0.3,1 --labels l.nrrd --opacity-variable q --opacity-component 2 --opacity-from o.nrrd --opacity-window -1,2 --with p,q.nrrd,preset=pet,window=0:5 --with phantom:gauss,n=32,color=red --label-tf l.txt --label-show 1,3-5 --map coast --coast c.shp --coast-by arrays --point-light -1,2,3.5,1,0.5,0.25,4 --disc-light 1,2,3,4";
 
     #[test]
     fn a_saved_scene_comes_back_as_it_was() {

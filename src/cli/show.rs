@@ -3,10 +3,17 @@
 //! | word | stands for |
 //! |---|---|
 //! | `vapor` | `--variable VAPOUR --mode iso --iso-color-by TEMPERATURE --annotate` |
-//! | `wind` | `--variable VAPOUR --hide-volume --flow stream --annotate` |
+//! | `wind` | `--variable VAPOUR --hide-volume --flow stream --annotate`, the terrain where the ground is not flat |
 //! | `both` | the first with `--flow stream` |
 
-use super::{Error, flags::SceneFlags, flow::FlowWord, load::open, map::MapWords};
+use super::{
+    Error,
+    flags::SceneFlags,
+    flow::{FlowWord, Variables},
+    ground::has_relief,
+    load::open,
+    map::MapWords,
+};
 use crate::annotate::{Marks, caption};
 use crate::figure::letter_lacking;
 use crate::technique::Mode;
@@ -106,8 +113,15 @@ fn expand(word: ShowWord, scene: &mut SceneFlags) -> Result<String, Error> {
     if word != ShowWord::Vapor {
         scene.flow.flow.get_or_insert(FlowWord::Stream);
     }
-    if scene.map.map.is_none() && MapWords::can_show(header) {
-        scene.map.map = Some(MapWords::ALL.parse().expect("words"));
+    let variables = Variables {
+        input: &scene.input,
+        limits,
+    };
+    if scene.map.map.is_none() && MapWords::can_show(header, &variables) {
+        let all: MapWords = MapWords::ALL.parse().expect("words");
+        // Below a surface of vapour the ground is hidden.
+        let has_terrain = word == ShowWord::Wind && has_relief(header, &variables);
+        scene.map.map = Some(if has_terrain { all.with_terrain() } else { all });
     }
     if scene.annotate.annotate.is_none() {
         let usual: Marks = Marks::USUAL.parse().expect("marks");

@@ -61,6 +61,9 @@ pub struct Header {
     pub derived: Vec<DerivedVariable>,
     /// The map that the world is drawn on; `None` where the file tells no map.
     pub map: Option<MapProjection>,
+    /// Names of the variables of two dimensions that hold the latitude and the longitude of each column, degrees; `None` where
+    /// the file has none.
+    pub earth_arrays: Option<[String; 2]>,
     /// CF standard names of [`Self::variables`], in their order, empty where one has none. Empty in formats without.
     pub variable_standard_names: Vec<String>,
     /// What the places along z of a piece of the Earth stand for.
@@ -111,6 +114,7 @@ impl Header {
             variables: Vec::new(),
             derived: Vec::new(),
             map: None,
+            earth_arrays: None,
             variable_standard_names: Vec::new(),
             heights: Heights::Lengths,
             notes: Vec::new(),

@@ -118,3 +118,69 @@ fn light_that_the_look_turns_on_is_not_called_idle() {
         }
     }
 }
+
+#[test]
+fn splats_of_labels_are_refused_by_the_labels_and_not_by_a_filter() {
+    let folder = Folder::new();
+    let label = |i: usize| match [i % 16, i / 16 % 16, i / 256] {
+        [x, y, _] if x < 3 || y < 3 => 0,
+        [.., z] if z < 8 => 1,
+        _ => 5,
+    };
+    folder.file("l.raw", (0..4096).map(label).collect::<Vec<u8>>());
+    for command in ["render", "animate --turntable 2"] {
+        let words = format!("{command} l.raw --raw 16x16x16,u8 --technique splat {SMALL} --force");
+        let output = if command == "render" {
+            "-o a.png"
+        } else {
+            "-o a%d.png"
+        };
+        let ran = folder.run(&format!("{words} {output}"));
+        ran.assert_refused(2, &["the values are labels", "--technique raycast"]);
+        assert!(!ran.err.contains("not for the filter"), "{ran:#?}");
+        folder
+            .run(&format!("{words} --filter linear {output}"))
+            .assert_done();
+    }
+    // A filter of the person's own is to blame itself.
+    folder
+        .run(&format!(
+            "render phantom:head,n=8 --technique splat --filter nearest {SMALL} -o b.png"
+        ))
+        .assert_refused(2, &["not for the filter nearest"]);
+}
+
+#[test]
+fn an_intermediate_image_without_room_hints_at_the_finest_that_has() {
+    let folder = Folder::new();
+    let render = "render phantom:head,n=16 --technique shear-warp --size 32x24 -o a.png";
+    let ran = folder.run(&format!("{render} --intermediate 5000"));
+    ran.assert_refused(
+        2,
+        &["the view asks for an intermediate image of", "has room"],
+    );
+    let after = |words: &str| -> f64 {
+        let rest = ran.err.split(words).nth(1).expect("the words");
+        rest.split(' ')
+            .next()
+            .expect("a number")
+            .parse()
+            .expect("a number")
+    };
+    let (across, number) = (after("image of "), after("hint: --intermediate "));
+    // As fine as that the image has no more pixels across than there is room for, and takes no more than a device has: 2 GiB at most.
+    assert!(across * number / 5000.0 <= 16384.0, "{ran:#?}");
+    assert!(number > 10.0, "{ran:#?}");
+}
+
+#[test]
+fn two_words_about_empty_space_are_refused() {
+    let folder = Folder::new();
+    for command in ["render", "animate", "thumbnails", "bench"] {
+        folder
+            .run(&format!(
+                "{command} phantom:head,n=8 --empty-space octree --no-skip"
+            ))
+            .assert_refused(2, &["cannot be used with", "--no-skip", "--empty-space"]);
+    }
+}

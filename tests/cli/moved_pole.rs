@@ -160,6 +160,74 @@ fn a_coast_lies_on_a_grid_with_a_moved_pole_where_the_earth_has_it() {
     assert!(on > 100 && off > 3000, "{on} {off}");
 }
 
+/// Columns are two degrees apart: between them the file's longitudes and latitudes are off by half of f'' (1 degree)^2, a
+/// kilometre, and three times as much where they go on for half a step.
+#[test]
+fn a_coast_by_the_latitudes_of_the_file_ends_with_the_grid() {
+    let folder = Folder::new();
+    // Without the place of the pole, and with one whose map would be refused.
+    folder.file("none.nc", file(0.0, "nothing", ALONG_ROWS));
+    folder.file("other.nc", file(0.5, "pole", ALONG_ROWS));
+    let parallel = |off: f64| -> Vec<[f64; 2]> {
+        let places = (-45..=45).map(|i| on_earth(0.25 * f64::from(i), 1.0));
+        places.map(|[x, y]| [x, y + off]).collect()
+    };
+    for (name, off, words) in [("none.nc", 0.0, ""), ("other.nc", 0.5, "--coast-by arrays")] {
+        let line = parallel(off);
+        folder.file(
+            "c.geojson",
+            format!(r#"{{"type":"LineString","coordinates":{line:?}}}"#),
+        );
+        let ran = folder.run(&format!(
+            "render {name} --variable ta --map coast --coast c.geojson {words} --hide-volume --look plain --background none \
+             --eye 0,0,9999 --target 0,0,0 --up 0,1,0 --projection orthographic --view-height 2400 --size 60x60 -o a.npy --force"
+        ));
+        ran.assert_done();
+        let said = "the map is placed by lat and lon of each column, and ends with the grid";
+        assert_eq!(ran.err.contains(said), words.is_empty(), "{}", ran.err);
+        let bytes = fs::read(folder.path("a.npy")).expect("a picture");
+        let pixels = &bytes[bytes.len() - 16 * SIDE * SIDE..];
+        let pixel_km = 2.0 * PIXEL;
+        let row = 30.0 - DEGREE / pixel_km;
+        // The grid has seven columns.
+        let reach = 7.0 * DEGREE / pixel_km;
+        let (mut on, mut beside) = (0, 0);
+        for (i, pixel) in pixels.chunks(16).enumerate() {
+            let [x, y] = [i % SIDE, i / SIDE].map(|n| n as f64 + 0.5);
+            let is_drawn = f32::from_le_bytes(pixel[12..].try_into().expect("four bytes")) > 0.0;
+            let [along, across] = [(x - 30.0).abs(), (y - row).abs()];
+            if along < reach - 0.1 && across < 0.9 {
+                assert!(is_drawn, "{name}: {x} {y}");
+                on += 1;
+            }
+            // The round end of a line two pixels wide.
+            if along > reach + 1.1 || across > 1.1 {
+                assert!(!is_drawn, "{name}: {x} {y}");
+                beside += 1;
+            }
+        }
+        assert!(on > 60 && beside > 3000, "{on} {beside}");
+    }
+    for (words, wanted) in [
+        ("other.nc --map coast", "--coast-by arrays places the map"),
+        (
+            "none.nc --map coast --coast-by projection",
+            "no place on the Earth",
+        ),
+        ("none.nc --coast-by arrays", "--map coast draws them"),
+    ] {
+        let (name, words) = words.split_once(' ').expect("a file");
+        folder
+            .run(&format!(
+                "render {name} --variable ta {words} --size 16x12 --force -o a.png"
+            ))
+            .assert_refused(2, &[wanted]);
+    }
+    folder
+        .run("render phantom:storm,n=8 --variable vapor --map coast --coast-by arrays --size 16x12 -o b.png")
+        .assert_refused(2, &["--coast-by arrays: wanted variables of two dimensions", "found none"]);
+}
+
 #[test]
 fn what_a_moved_pole_leaves_unknown_is_refused() {
     let folder = Folder::new();
@@ -176,7 +244,8 @@ fn what_a_moved_pole_leaves_unknown_is_refused() {
         ))
     };
     render("other.nc", "--map coast").assert_refused(2, &["differ by 55.6", "at a corner"]);
-    render("none.nc", "--map coast").assert_refused(2, &["no place on the Earth", "grid_mapping"]);
+    render("none.nc", "--map coast --coast-by projection")
+        .assert_refused(2, &["no place on the Earth", "grid_mapping"]);
     render("east.nc", "--flow stream")
         .assert_refused(2, &["u is eastward_wind", "wanted x_wind and y_wind"]);
     render("rows.nc", "--flow stream").assert_done();

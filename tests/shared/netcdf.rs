@@ -21,6 +21,16 @@ pub fn netcdf(
     texts: &[(&str, &str)],
     variables: &[Variable],
 ) -> Vec<u8> {
+    netcdf_with(dimensions, texts, &[], variables)
+}
+
+/// The same with numbers that are of the whole file.
+pub fn netcdf_with(
+    dimensions: &[(&str, u32)],
+    texts: &[(&str, &str)],
+    numbers: &[(&str, f64)],
+    variables: &[Variable],
+) -> Vec<u8> {
     let header = |begins: &[u32]| {
         let mut out = b"CDF\x01".to_vec();
         put(&mut out, 0);
@@ -29,7 +39,7 @@ pub fn netcdf(
             text(&mut out, name);
             put(&mut out, *size);
         }
-        attributes(&mut out, texts, &[]);
+        attributes(&mut out, texts, numbers);
         list(&mut out, VARIABLE, variables.len());
         for (variable, begin) in variables.iter().zip(begins) {
             text(&mut out, variable.name);

@@ -125,7 +125,7 @@ pub struct Animate {
     #[arg(long, help_heading = "Run")]
     force: bool,
     /// No empty-space skipping: the picture is the same without
-    #[arg(long)]
+    #[arg(long, conflicts_with = "empty_space")]
     no_skip: bool,
 }
 
@@ -303,6 +303,23 @@ impl Animate {
         for shot in &mut shots {
             shot.settings.skip &= !self.no_skip;
         }
+        // A file says how many rays there are.
+        let said = match self.scene_file {
+            Some(_) => scene,
+            None => &self.scene,
+        };
+        let lines = match &content {
+            Content::Still(shown) | Content::Together(shown, _) => shown.lines(),
+            Content::Times(..) => None,
+        };
+        let of_lines = flow::notes(
+            said,
+            scene,
+            lines,
+            &shots[0].camera,
+            scene.picture.extent_pixels()?,
+        );
+        of_lines.iter().for_each(|note| progress.note(note));
         let kept = Kept::new(self.save_scene.is_some());
         let drawing = Drawing {
             scene,

@@ -24,6 +24,8 @@ pub struct Together {
     /// Of the lines of the first time.
     seeds: Vec<FilmSeed>,
     ways: Option<Arc<Ways>>,
+    /// Seconds between spheres along them.
+    sphere_step: Option<f64>,
 }
 
 impl Together {
@@ -51,6 +53,7 @@ impl Together {
             seeds: first
                 .lines()
                 .map_or(Vec::new(), |lines| lines.seeds().to_vec()),
+            sphere_step: first.lines().and_then(DrawnLines::sphere_step),
             scene,
             settings: settings.clone(),
             memory,
@@ -77,7 +80,12 @@ impl Together {
         }
         let seeds = &self.seeds;
         let ways = self.ways.as_deref();
-        let of_film = Some(FilmTime { time, seeds, ways });
+        let of_film = Some(FilmTime {
+            time,
+            seeds,
+            ways,
+            sphere_step: self.sphere_step,
+        });
         let mut scene = self.scene.clone();
         scene.input.time = Some(before.to_string());
         shown.with_lines(&scene, of_film, &quiet)

@@ -183,6 +183,7 @@ impl SceneFlags {
             ("--flow", self.flow.flow.is_some()),
             ("--map", self.map.map.is_some()),
             ("--coast", self.map.coast.is_some()),
+            ("--coast-by", self.map.coast_by.is_some()),
             ("--barbs", self.barbs.barbs.is_some()),
             ("--ground", self.ground.ground.is_some()),
             ("--with", self.with.shapes().next().is_some()),

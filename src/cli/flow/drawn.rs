@@ -20,6 +20,7 @@ use super::moving::{Drawn, Passed, Tail, Way, Ways, in_words};
 use super::ribbon::turns;
 use super::style::StyleWord;
 use super::surface::Surface;
+use super::variable::Variables;
 use crate::annotate::{ColorLegend, DegreeLine, GeometryLegend};
 use crate::color::decode_srgb;
 use crate::figure::short;
@@ -51,6 +52,8 @@ pub struct DrawnLines {
     seeds: Vec<FilmSeed>,
     /// What other frames of a film draw up to their times.
     ways: Option<Arc<Ways>>,
+    /// Seconds between spheres along them.
+    sphere_step: Option<f64>,
     pub(super) barbs: Option<Barbs>,
     pub(super) ground: Option<Ground>,
     /// What symbols mean, a sentence each.
@@ -157,6 +160,7 @@ impl DrawnLines {
         self.points = more.points;
         self.seeds = more.seeds;
         self.ways = more.ways;
+        self.sphere_step = more.sphere_step;
         self.barbs = more.barbs;
         self.ground = more.ground;
         self.words = more.words;
@@ -182,14 +186,21 @@ impl DrawnLines {
         let mut drawn = Self::default();
         let at = of_film.map(|film| film.time);
         drawn.ground = Ground::read(scene, header, stretch, at, progress)?;
-        let of_map = scene.map.lines(header, &scene.input.limits())?;
+        let input = &input_of_wind(scene);
+        let variables = Variables {
+            input,
+            limits: input.limits(),
+        };
+        let of_map = scene.map.lines(header, &variables, progress)?;
         let is_on_light = is_light(scene.picture.background());
         drawn.add_map(of_map, stretch, scene.section.half_thickness(), is_on_light);
         if let Some(word) = scene.flow.flow {
             let of_seeds = of_film.filter(|film| !film.seeds.is_empty());
             match of_film.and_then(|film| film.ways.map(|ways| (ways, ways.now(&film)))) {
                 Some((ways, now)) => {
-                    drawn.add_ways(ways, word, scene, header, Some(now), progress)?
+                    let of_film = of_film.and_then(|film| film.sphere_step);
+                    let of = (ways, Some(now), of_film);
+                    drawn.add_ways(of, word, scene, header, progress)?
                 }
                 None => drawn.add_wind(word, scene, header, stretch, of_seeds, progress)?,
             }
@@ -226,8 +237,8 @@ impl DrawnLines {
                     places: drawn.clone().flatten().collect(),
                 });
             }
-            // The brightest lines stand out most from the dark, and the darkest from a light background.
-            let grey = match is_on_light && self.ground.is_none() {
+            // The brightest lines stand out most from the dark, and the darkest from a light background; the ground is neither.
+            let grey = match is_on_light {
                 true => 1.0 - line.grey,
                 false => line.grey,
             };
@@ -358,19 +369,19 @@ impl DrawnLines {
             }),
             range: colors.range,
         };
-        self.add_ways(&ways, word, scene, header, None, progress)?;
+        let of_first = of_film.and_then(|film| film.sphere_step);
+        self.add_ways((&ways, None, of_first), word, scene, header, progress)?;
         self.ways = (word == FlowWord::Path).then(|| Arc::new(ways));
         Ok(())
     }
 
-    /// Ways at a moment, or as long as they are.
+    /// Ways at a moment, or as long as they are; spheres along them so many seconds apart, where the first frame of a film says it.
     fn add_ways(
         &mut self,
-        ways: &Ways,
+        (ways, now, step): (&Ways, Option<f64>, Option<f64>),
         word: FlowWord,
         scene: &SceneFlags,
         header: &Header,
-        now: Option<f64>,
         progress: &Progress,
     ) -> Result<(), Error> {
         let style = &scene.flow_style;
@@ -409,7 +420,8 @@ impl DrawnLines {
             Some(word) => word.in_world(header),
         };
         if look == StyleWord::Points {
-            let step = ways.time_apart(header.is_earth);
+            let step = step.unwrap_or_else(|| ways.time_apart(header.is_earth));
+            self.sphere_step = Some(step);
             let marks = ways.ways.iter().map(|way| way.marks(now, step));
             let marks = marks.flatten().map(|mark| vec![mark]).collect();
             self.sets.push(LineSet::plain(marks, width(SPHERE_WIDTH)?));
@@ -449,6 +461,11 @@ impl DrawnLines {
     /// What other frames of a film draw up to their times.
     pub fn ways(&self) -> Option<&Arc<Ways>> {
         self.ways.as_ref()
+    }
+
+    /// Seconds between spheres along them; `None` where they have none.
+    pub fn sphere_step(&self) -> Option<f64> {
+        self.sphere_step
     }
 
     /// Values at the ends of their colours.

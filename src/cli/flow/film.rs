@@ -36,6 +36,8 @@ pub struct FilmTime<'a> {
     pub seeds: &'a [FilmSeed],
     /// The ways of particles, where lines are these.
     pub ways: Option<&'a Ways>,
+    /// Seconds between spheres along the lines of the first frame, where there are such.
+    pub sphere_step: Option<f64>,
 }
 
 /// The scene of a film from its time `first` on, whose stream lines have colours over the values of all times of the file where
@@ -60,6 +62,7 @@ pub fn with_range_of_film(
             time,
             seeds,
             ways: None,
+            sphere_step: None,
         });
         flags.traced(FlowWord::Stream, &input, of_film, Some(&[]), &quiet)
     };

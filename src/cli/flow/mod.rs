@@ -13,6 +13,7 @@ mod film;
 mod flags;
 mod ground;
 mod moving;
+mod notes;
 mod placed;
 mod ribbon;
 mod seeds;
@@ -30,6 +31,7 @@ pub use film::{FilmSeed, FilmTime, with_range_of_film};
 pub use flags::{FlowFlags, FlowWord};
 pub use ground::{heights as ground_heights, sea_of};
 pub use moving::Ways;
+pub use notes::notes;
 pub use style::FlowStyleFlags;
 pub use variable::{Variables, numbers};
 

@@ -322,6 +322,7 @@ mod tests {
                 time,
                 seeds: &[],
                 ways: None,
+                sphere_step: None,
             })
         };
         assert_eq!(

@@ -93,7 +93,7 @@ impl DrawnLines {
 }
 
 /// World length of a pixel at the distance of the target.
-fn pixel_at_target(camera: &Camera, extent_pixels: [u32; 2]) -> f64 {
+pub(super) fn pixel_at_target(camera: &Camera, extent_pixels: [u32; 2]) -> f64 {
     let rays = camera.rays(extent_pixels);
     match camera.projection.is_perspective() {
         true => rays.direction_dx.length() * (camera.target - camera.eye).dot(rays.forward),

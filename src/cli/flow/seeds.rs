@@ -99,7 +99,9 @@ fn of_file(path: &Path, header: &Header) -> Result<Vec<(DVec3, Option<f64>)>, Er
         }
         let nowhere = "it has degrees, and the grid of the wind has no place on the Earth that is known, or its latitudes and \
                        its map differ: x,y,z are wanted";
-        let on_earth = on_earth.ok_or_else(|| failed(nowhere.to_owned()))?;
+        let on_earth = on_earth
+            .as_ref()
+            .ok_or_else(|| failed(nowhere.to_owned()))?;
         let [x, y] = on_earth.place([p.x, p.y]).ok_or_else(|| {
             let place = format!("longitude {}, latitude {}", p.x, p.y);
             failed(format!("{place} lies nowhere on the map of the wind"))

@@ -84,7 +84,7 @@ impl DrawnLines {
                     let left_out = file.points().len() - places.len();
                     if left_out > 0 {
                         progress.note(&format!(
-                            "with {}, {left_out} points have no place on the map of the volume, and are left out",
+                            "with {}, points without a place on the map of the volume: {left_out}; they are left out",
                             word.name()
                         ));
                     }

@@ -4,6 +4,7 @@ use super::super::{Error, flags::InputFlags};
 use crate::volume::{Limits, Source, TimeComponent, Volume, sample::nearest};
 
 /// Opens variables of one input.
+#[derive(Clone, Copy, Debug)]
 pub struct Variables<'a> {
     pub input: &'a InputFlags,
     pub limits: Limits,

@@ -165,6 +165,21 @@ fn input_of_any(scene: &SceneFlags) -> InputFlags {
     }
 }
 
+/// Metres: ground that rises by less is flat.
+const RELIEF: f64 = 1.0;
+
+/// True where the file has heights of the ground that can be drawn, and they are not all the same.
+pub fn has_relief(header: &Header, variables: &Variables<'_>) -> bool {
+    let is_drawn = check(header, "--map terrain", variables).is_ok();
+    let heights = || ground_heights(variables, header).ok().flatten();
+    let Some(heights) = is_drawn.then(heights).flatten() else {
+        return false;
+    };
+    let low = heights.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    (high - low) * header.length_metres.unwrap_or(1.0) > RELIEF
+}
+
 fn check(header: &Header, word: &str, variables: &Variables<'_>) -> Result<(), Error> {
     if !is_upright(header) {
         return Err(no_ground(word, "a grid that is turned"));

@@ -8,7 +8,7 @@
 
 use super::Error;
 use super::earth::Lines;
-use super::project::{pieces, turns};
+use super::project::{FINE, pieces, turns};
 use crate::format::geographic::read_lines;
 use crate::volume::Limits;
 use serde::{Deserialize, Serialize};
@@ -41,7 +41,7 @@ impl CoastFile {
         let lines: Lines = lines.flat_map(without_edges).collect();
         let long = lines.iter().flat_map(|line| line.windows(2));
         let count: u64 = long
-            .map(|pair| u64::from(pieces(pair[0], pair[1]) - 1))
+            .map(|pair| u64::from(pieces(pair[0], pair[1], FINE) - 1))
             .sum();
         if count > MOST_PIECES {
             return Err(Error::Input {

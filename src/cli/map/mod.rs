@@ -6,14 +6,18 @@
 //! coarser     40 degrees and wider: places of coast and borders nearer to the last than a 2000th of the width are left out
 //! ```
 
+mod arrays;
 mod coast;
+mod coast_by;
 mod earth;
 mod project;
 
-use super::Error;
-use crate::volume::{Grid, Header, Limits};
+use super::{Error, flow::Variables, progress::Progress};
+use crate::volume::{Grid, Header};
+use arrays::Arrays;
 use clap::Args;
 use coast::CoastFile;
+use coast_by::{CoastBy, placed};
 use earth::{Lines, earth};
 use glam::DVec3;
 use project::{FINE, Projection, projected_line, turns};
@@ -45,6 +49,11 @@ pub struct MapFlags {
     #[arg(long, value_name = "FILE.shp|.geojson|.json", help_heading = "Lines")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub coast: Option<CoastFile>,
+    /// What places the lines of --map on the volume [default: projection; arrays where the grid has no projection that is
+    /// known]
+    #[arg(long, value_enum, value_name = "WHAT", help_heading = "Lines")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub coast_by: Option<CoastBy>,
 }
 
 impl MapFlags {
@@ -52,18 +61,31 @@ impl MapFlags {
     ///
     /// # Errors
     /// Where it has no place on the Earth, or none is known; where the file of the coast cannot be read, or is not asked for.
-    pub fn lines(&self, header: &Header, limits: &Limits) -> Result<Vec<GroundLine>, Error> {
+    pub fn lines(
+        &self,
+        header: &Header,
+        variables: &Variables<'_>,
+        progress: &Progress,
+    ) -> Result<Vec<GroundLine>, Error> {
         if self.coast.is_some() && !self.map.is_some_and(|words| words.coast) {
             return Err(Error::usage(
                 "--coast FILE is the coast of --map",
                 "--map coast draws it",
             ));
         }
-        let Some(words) = self.map else {
+        if self.coast_by.is_some() && !self.map.is_some_and(|words| words.has_lines()) {
+            return Err(Error::usage(
+                "--coast-by says what places the lines of --map",
+                "--map coast draws them",
+            ));
+        }
+        let words = self.map.filter(MapWords::has_lines);
+        let Some(words) = words else {
             return Ok(Vec::new());
         };
-        words.lines(header, || match &self.coast {
-            Some(file) => file.lines(limits),
+        let projection = placed(header, self.coast_by, variables, progress)?;
+        words.lines(header, &projection, || match &self.coast {
+            Some(file) => file.lines(&variables.limits),
             None => Ok(&earth().coast),
         })
     }
@@ -83,7 +105,7 @@ impl MapFlags {
 }
 
 /// Where x and y of the world lie on the Earth, and back.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct OnEarth {
     projection: Projection,
     /// Longitude of the middle of the grid.
@@ -117,7 +139,10 @@ impl OnEarth {
 /// Whether a place of the world lies in the southern hemisphere; none does where the latitude is not known.
 pub fn is_southern(header: &Header) -> impl Fn(DVec3) -> bool {
     let projection = Projection::of(header);
-    move |place| projection.is_some_and(|map| map.latitude([place.x, place.y]) < 0.0)
+    move |place| {
+        let map = projection.as_ref();
+        map.is_some_and(|map| map.latitude([place.x, place.y]) < 0.0)
+    }
 }
 
 /// A line on the ground, world, before heights are exaggerated.
@@ -153,9 +178,26 @@ impl MapWords {
     /// All of it.
     pub const ALL: &str = "coast,borders,graticule";
 
-    /// True where a volume has a place on the Earth.
-    pub fn can_show(header: &Header) -> bool {
-        OnEarth::of(header).is_some()
+    /// True where a volume has a place on the Earth that lines can be placed by.
+    pub fn can_show(header: &Header, variables: &Variables<'_>) -> bool {
+        let by_arrays = || {
+            let is_unknown = Projection::of(header).is_none();
+            is_unknown && matches!(Arrays::read(header, variables), Ok(Some(_)))
+        };
+        OnEarth::of(header).is_some() || by_arrays()
+    }
+
+    /// True where lines of the Earth are drawn.
+    fn has_lines(&self) -> bool {
+        self.coast || self.borders || self.graticule.is_some()
+    }
+
+    /// The same and the heights of the ground.
+    pub fn with_terrain(self) -> Self {
+        Self {
+            terrain: true,
+            ..self
+        }
     }
 
     /// True where heights of the ground are drawn.
@@ -166,27 +208,9 @@ impl MapWords {
     fn lines<'a>(
         self,
         header: &Header,
+        projection: &Projection,
         coast: impl FnOnce() -> Result<&'a Lines, Error>,
     ) -> Result<Vec<GroundLine>, Error> {
-        if !(self.coast || self.borders || self.graticule.is_some()) {
-            return Ok(Vec::new());
-        }
-        let projection = Projection::of(header).ok_or_else(|| {
-            Error::usage(
-                "--map: the volume has no place on the Earth: wanted latitudes and longitudes, those of a moved pole with its grid_mapping, or a WRF \
-                 file with MAP_PROJ, TRUELAT1 and XLAT",
-                "leave out --map",
-            )
-        })?;
-        let off = header.map.and_then(|map| projection.disagreement(&map));
-        if let Some(off) = off {
-            return Err(Error::usage(
-                format!(
-                    "--map: latitudes in the file and its projection differ by {off:.2} km at a corner"
-                ),
-                "leave out --map",
-            ));
-        }
         let grid = Grid {
             dims: header.dims,
             world_from_voxel: header.world_from_voxel,
@@ -197,7 +221,7 @@ impl MapWords {
             let mut count = 0;
             for (line, degrees) in graticule(&area, step) {
                 let first = lines.len();
-                let places = projected(&projection, &area, [line.as_slice()].into_iter());
+                let places = projected(projection, &area, [line.as_slice()].into_iter());
                 area.add(&mut lines, &places, GRATICULE);
                 for line in &mut lines[first..] {
                     line.degrees = Some(degrees);
@@ -216,7 +240,7 @@ impl MapWords {
         }
         let mut add = |all: &Lines, look| {
             let places = all.iter().map(|line| line.as_slice());
-            let mut places = projected(&projection, &area, places);
+            let mut places = projected(projection, &area, places);
             if area.width() >= WIDE * KM_PER_DEGREE {
                 places
                     .iter_mut()
@@ -358,7 +382,7 @@ fn projected<'a>(
 ) -> Flat {
     let turns: &[f64] = match projection {
         Projection::Degrees(_) => &[-360.0, 0.0, 360.0],
-        Projection::Map { .. } | Projection::MovedPole { .. } => &[0.0],
+        Projection::Map { .. } | Projection::MovedPole { .. } | Projection::Arrays(_) => &[0.0],
     };
     let is_near = |line: &Vec<[f64; 2]>| {
         (0..2).all(|k| {

@@ -6,14 +6,17 @@
 //! Lambert          n = ln(cos p1 / cos p2) / ln(tan(45 + p2 / 2) / tan(45 + p1 / 2)),  n = sin p1 where p1 = p2
 //!                  r = R cos p1 / n * (tan(45 + p1 / 2) / tan(45 + p / 2))^n,  x = r sin(n l),  y = -r cos(n l)
 //! moved pole       as degrees, of longitude and latitude from that pole (`volume::MovedPole`)
+//! arrays           between the columns of the file with their own longitudes and latitudes (`arrays`)
 //! stereographic    r = R (1 + sin|p1|) cos p / (1 + sin(s p)),  x = r sin l,  y = -s r cos l,  s the sign of p1
 //! ```
 //!
 //! l the longitude from the one that runs straight north, p1 and p2 the true latitudes, on a sphere of 6370 km as WRF has it.
 //! Snyder, "Map Projections: A Working Manual", USGS Professional Paper 1395, 1987, chapters 7, 15, 21.
 
+use super::arrays::Arrays;
 use crate::volume::{Header, MapCorner, MapKind, MapProjection, MovedPole};
 use glam::DVec3;
+use std::sync::Arc;
 
 /// Of a step.
 const MOST_OFF: f64 = 0.05;
@@ -22,9 +25,13 @@ const RADIUS: f64 = 6370.0;
 
 /// Degrees between places of a line that is bent on the map.
 pub(super) const FINE: f64 = 0.25;
+/// The same of the finest grids.
+const FINEST: f64 = 0.01;
+/// Turns that look for the border of a map: a millionth of a piece.
+const HALVINGS: u32 = 20;
 
 /// Takes places of the Earth to the world.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) enum Projection {
     /// Lengths of a degree along x and y.
     Degrees([f64; 2]),
@@ -41,6 +48,8 @@ pub(super) enum Projection {
         longitude: f64,
         origin: [f64; 2],
     },
+    /// The file's own latitudes and longitudes.
+    Arrays(Arc<Arrays>),
 }
 
 impl Projection {
@@ -87,7 +96,7 @@ impl Projection {
                 longitude,
                 origin,
             }),
-            Self::Degrees(_) | Self::MovedPole { .. } => None,
+            Self::Degrees(_) | Self::MovedPole { .. } | Self::Arrays(_) => None,
         }
     }
 
@@ -109,6 +118,7 @@ impl Projection {
         match *self {
             Self::Degrees(_) => (b - a).abs() > 180.0,
             Self::MovedPole { .. }
+            | Self::Arrays(_)
             | Self::Map {
                 kind: MapKind::PolarStereographic,
                 ..
@@ -121,7 +131,8 @@ impl Projection {
 
     /// True where two places that lie beside each other on the Earth do not on the map.
     fn are_apart(&self, a: [f64; 2], b: [f64; 2]) -> bool {
-        match *self {
+        match self {
+            Self::Arrays(arrays) => arrays.are_apart(a, b),
             Self::MovedPole { degree_lengths, .. } => {
                 (b[0] - a[0]).abs() > 180.0 * degree_lengths[0]
             }
@@ -142,8 +153,35 @@ impl Projection {
                 true_latitudes: [first, _],
                 ..
             } => Some(std::f64::consts::TAU * RADIUS * first.to_radians().cos()),
-            Self::Map { .. } => None,
+            Self::Map { .. } | Self::Arrays(_) => None,
         }
+    }
+
+    /// Degrees between places of a line that is bent on the map.
+    fn fine(&self) -> f64 {
+        match self {
+            // Two places from column to column.
+            Self::Arrays(arrays) => FINE.min(0.5 * arrays.step()).max(FINEST),
+            _ => FINE,
+        }
+    }
+
+    /// The last place on the map along the straight way from one that is on it to one that is not; `None` where the map ends
+    /// nowhere that lines should be drawn to.
+    fn border(&self, on: [f64; 2], off: [f64; 2]) -> Option<[f64; 2]> {
+        let Self::Arrays(arrays) = self else {
+            return None;
+        };
+        let mut last = None;
+        let [mut inside, mut outside] = [0.0, 1.0];
+        for _ in 0..HALVINGS {
+            let part = 0.5 * (inside + outside);
+            match arrays.place([0, 1].map(|k| on[k] + part * (off[k] - on[k]))) {
+                Some(place) => (last, inside) = (Some(place), part),
+                None => outside = part,
+            }
+        }
+        last
     }
 
     /// The latitude in degrees of x and y of the world.
@@ -154,6 +192,7 @@ impl Projection {
     /// Longitude and latitude in degrees of x and y of the world.
     pub fn earth(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let (kind, true_latitudes, middle, origin) = match *self {
+            Self::Arrays(ref arrays) => return arrays.earth([x, y]),
             Self::Degrees([along_x, along_y]) => return [x / along_x, y / along_y],
             Self::MovedPole {
                 pole,
@@ -197,6 +236,9 @@ impl Projection {
 
     /// x and y of a longitude and a latitude in degrees, world; `None` where the map has no such place.
     pub fn place(&self, [longitude, latitude]: [f64; 2]) -> Option<[f64; 2]> {
+        if let Self::Arrays(arrays) = self {
+            return arrays.place([longitude, latitude]);
+        }
         if let Self::MovedPole {
             pole,
             degree_lengths,
@@ -263,10 +305,10 @@ pub(super) fn turns(from: f64, to: f64) -> f64 {
     }
 }
 
-/// How many straight pieces of a map stand for a line that is straight in longitude and latitude.
-pub(super) fn pieces(a: [f64; 2], b: [f64; 2]) -> u32 {
+/// How many straight pieces of a map, no longer than `fine` degrees, stand for a line that is straight in longitude and latitude.
+pub(super) fn pieces(a: [f64; 2], b: [f64; 2], fine: f64) -> u32 {
     let degrees = (b[0] - a[0]).abs().max((b[1] - a[1]).abs());
-    (degrees / FINE).ceil().max(1.0) as u32
+    (degrees / fine).ceil().max(1.0) as u32
 }
 
 /// Takes a line to the map, so many degrees to the east; gives its parts between edges of the map.
@@ -285,28 +327,39 @@ pub(super) fn projected_line(
         if is_bent {
             place[0] += 360.0 * turns(from[0], place[0]);
         }
-        let count = if is_bent { pieces(from, place) } else { 1 };
-        let mut last = from[0];
+        let count = match is_bent {
+            true => pieces(from, place, projection.fine()),
+            false => 1,
+        };
+        let mut last = from;
         for i in 1..=count {
             let part_of_way = f64::from(i) / f64::from(count);
             let at = match i == count {
                 true => place,
                 false => [0, 1].map(|k| from[k] + part_of_way * (place[k] - from[k])),
             };
-            if projection.is_over_edge(last, at[0]) {
+            if projection.is_over_edge(last[0], at[0]) {
                 give(std::mem::take(&mut part));
             }
             match projection.place(at) {
                 Some(place) => {
+                    if part.is_empty() {
+                        part.extend(projection.border(at, last));
+                    }
                     let last = part.last().copied().unwrap_or(place);
                     if projection.are_apart(last, place) {
                         give(std::mem::take(&mut part));
                     }
                     part.push(place);
                 }
-                None => give(std::mem::take(&mut part)),
+                None => {
+                    if !part.is_empty() {
+                        part.extend(projection.border(last, at));
+                    }
+                    give(std::mem::take(&mut part));
+                }
             }
-            last = at[0];
+            last = at;
         }
         before = Some(place);
     }

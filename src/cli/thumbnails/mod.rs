@@ -79,7 +79,7 @@ pub struct Thumbnails {
     #[arg(long, help_heading = "Run")]
     force: bool,
     /// No empty-space skipping: the pictures are the same without
-    #[arg(long)]
+    #[arg(long, conflicts_with = "empty_space")]
     no_skip: bool,
 }
 

@@ -3,7 +3,7 @@
 use super::axes::{coordinate, in_scope};
 use super::choose::{Choice, choose};
 use super::coordinates::Coordinate;
-use super::curved::flattened;
+use super::curved::{flattened, latitude_longitude};
 use super::derive::{available, recipe};
 use super::grid::{Grid, Role};
 use super::model::{Arrays, Kind, Variable};
@@ -52,11 +52,12 @@ fn open_checked(
     }
     let mut notes = Vec::new();
     let dims = dims(arrays.as_ref(), &choice)?;
-    let (place, map) = placed(arrays.as_ref(), &choice, dims, &mut notes)?;
+    let (place, map, earth_arrays) = placed(arrays.as_ref(), &choice, dims, &mut notes)?;
     let mut header = Header::new(format, dims, VoxelType::F32, place.world_from_voxel);
     header.is_earth = place.is_earth;
     header.degree_lengths = place.degrees;
     header.map = map;
+    header.earth_arrays = earth_arrays;
     header.derived = available(arrays.as_ref());
     header.heights = place.heights;
     header.notes = notes;
@@ -162,12 +163,13 @@ pub(super) fn dims(arrays: &dyn Arrays, choice: &Choice) -> Result<[u32; 3], Pro
     Ok(dims)
 }
 
+/// Where the points lie, the map they are drawn on, and the names of the latitudes and longitudes of all columns.
 fn placed(
     arrays: &dyn Arrays,
     choice: &Choice,
     dims: [u32; 3],
     notes: &mut Vec<String>,
-) -> Result<(Place, Option<MapProjection>), Problem> {
+) -> Result<(Place, Option<MapProjection>, Option<[String; 2]>), Problem> {
     let mut coordinates = [None, None, None];
     for (role, dimension) in choice.roles.iter().zip(&choice.variable.dimensions) {
         if let Role::Space(k) = *role
@@ -212,7 +214,11 @@ fn placed(
     if let Some((x, y)) = names.filter(|_| spanned.degrees != [None; 2]) {
         map = moved_pole::map(arrays, &choice.variable, [x, y], &spanned, notes);
     }
-    Ok((spanned, map))
+    let earth_arrays = names.and_then(|(x, y)| {
+        let found = latitude_longitude(arrays, &choice.variable, x, y)?;
+        Some(found.map(|variable| variable.name.clone()))
+    });
+    Ok((spanned, map, earth_arrays))
 }
 
 /// Longer lists of moments are not read.

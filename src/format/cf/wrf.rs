@@ -14,7 +14,7 @@ use super::model::{Arrays, Variable};
 use super::open::{dims, grid};
 use super::place::from_points;
 use super::regular::with_axis;
-use super::wrf_map::map;
+use super::wrf_map::{latitude_longitude, map};
 use super::wrf_names::describe;
 use crate::format::problem::invalid;
 use crate::volume::{
@@ -88,6 +88,7 @@ pub(super) fn open(
     let mut header = stored_header(arrays.as_ref(), format, size, &levels)?;
     header.derived = available(arrays.as_ref());
     header.map = map(arrays.as_ref(), &mut header.notes);
+    header.earth_arrays = latitude_longitude(arrays.as_ref());
     if recipe.is_none() {
         describe(&choice.variable, &mut header);
     }

@@ -50,6 +50,13 @@ pub(super) fn map(arrays: &dyn Arrays, notes: &mut Vec<String>) -> Option<MapPro
     })
 }
 
+/// Names of the latitude and the longitude of each column, where the file has both.
+pub(super) fn latitude_longitude(arrays: &dyn Arrays) -> Option<[String; 2]> {
+    let names = ["XLAT", "XLONG"];
+    let is_there = |name: &&str| arrays.variables().iter().any(|other| other.name == **name);
+    names.iter().all(is_there).then(|| names.map(str::to_owned))
+}
+
 /// The points in the corners by XLAT and XLONG, and by the steps around the middle.
 fn corners(arrays: &dyn Arrays) -> [Option<MapCorner>; 4] {
     [[0, 0], [1, 0], [0, 1], [1, 1]].map(|end| corner(arrays, end))

@@ -99,6 +99,11 @@ pub const FEATURES: &[Feature] = &[
         "--with other{place}.nrrd,color=red,window=0:255",
     ),
     feature(
+        "shape",
+        "a surface beside the volume",
+        "--with bar{place}.stl,color=orange",
+    ),
+    feature(
         "opacity",
         "opacity by another volume",
         "--opacity-from other{place}.nrrd",

@@ -109,6 +109,7 @@ pub fn write(folder: &Folder) {
         // On a grid of its own: no voxel of it is one of another volume.
         let other = nrrd(center.map(|c| c + 3.0), side, other);
         folder.file(&format!("other{place}.nrrd"), other);
+        folder.file(&format!("bar{place}.stl"), bar(center, side));
     }
     let colors = |[x, y, z]: [i32; 3]| {
         let distance = f64::from(x * x + y * y + z * z).sqrt();
@@ -124,6 +125,33 @@ pub fn write(folder: &Folder) {
         writeln!(rows, "{x},{y},{},{t}", 0.5 * t - 15.0).expect("text");
     }
     folder.file("points.csv", rows);
+}
+
+/// A prism that goes through a cube along x and out at both sides, and no plane of it along the axes.
+fn bar([x, y, z]: [f64; 3], side: f64) -> String {
+    let corner = |k: usize| {
+        let end = if k < 3 { -0.75 } else { 0.75 } * side;
+        let [across, up] = [[0.06, 0.01], [-0.05, 0.04], [-0.02, -0.06]][k % 3];
+        format!("vertex {} {} {}", x + end, y + across * side, z + up * side)
+    };
+    let sides = [
+        [0, 1, 4],
+        [0, 4, 3],
+        [1, 2, 5],
+        [1, 5, 4],
+        [2, 0, 3],
+        [2, 3, 5],
+    ];
+    let mut text = "solid bar\n".to_owned();
+    for side in sides {
+        let corners = side.map(corner).join("\n");
+        writeln!(
+            text,
+            "facet normal 0 0 0\nouter loop\n{corners}\nendloop\nendfacet"
+        )
+        .expect("text");
+    }
+    text + "endsolid bar\n"
 }
 
 const SIDE: i32 = 20;

@@ -49,6 +49,14 @@ pub const RULES: &[Rule] = &[
             "a section is of a volume, and spheres are none",
         ),
     ),
+    of(
+        &["a surface beside the volume"],
+        needs(
+            "a plane meets a surface in a line without a width",
+            "--thickness 60",
+            "a surface of triangles has no thickness, and a section without one meets it in a line",
+        ),
+    ),
     no_meaning(
         "it stands at a height of its own, and not in the plane",
         "barbs and the ground stand at a height, and a section is a plane",
