@@ -152,10 +152,9 @@ impl Book {
             fail(&source, name, e.location(&source.text), &picture)
         });
         constants::mark(&mut module);
-        // No capability beyond the core: a shader that needs more is a build error. The one is naga's word for `unpack2x16float`,
-        // which is of the core in SPIR-V.
+        // No capability beyond the core: a shader that needs more is a build error.
         let check = |module: &naga::Module, flags| {
-            Validator::new(flags, Capabilities::SHADER_FLOAT16_IN_FLOAT32)
+            Validator::new(flags, Capabilities::empty())
                 .validate(module)
                 .unwrap_or_else(|e| {
                     let picture = e.emit_to_string(&source.text);

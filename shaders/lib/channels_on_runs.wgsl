@@ -1,28 +1,21 @@
 // Classified voxels as runs, of samples in the slices of a stack: of rows of voxels along x those alone are kept whose depth is
-// over 0. Of each 32 voxels of a row there are a mask and the number of full voxels before them, and the payload follows:
+// over 0. Of each 32 voxels of a row there are a mask and the number of full voxels before them, so that the payload of voxel i has
 //
 //     rank = first + popcount(mask & (2^(i mod 32) - 1))
 //
+// Both lie in rows of 4096 texels: processors that run shaders fetch a texel sooner than a word of a buffer.
 // Of a voxel that is not full all four numbers are 0. Bilinear inside the slice: along the lower axis first. CPU reference of the
 // ranks: `RunBits::rank` (src/volume/runs/bits.rs); src/resident/classified_runs.rs makes them.
 
 #import footprint
-#import run_payload_{transfer}
+
+// Mask, and how many full voxels come before.
+@group(0) @binding(50) var run_words: texture_2d<u32>;
+// Red, green and blue times depth, and depth.
+@group(0) @binding(51) var run_payload: texture_2d<f32>;
 
 const RUN_WORD_VOXELS: u32 = 32u;
-
-// Where the words and the payload lie.
-struct RunGrid {
-    words_of_row: u32,
-    rows_of_slice: u32,
-    payload: u32,
-}
-
-fn run_grid() -> RunGrid {
-    let dims = vec3<u32>(frame.dims);
-    let words_of_row = (dims.x + RUN_WORD_VOXELS - 1u) / RUN_WORD_VOXELS;
-    return RunGrid(words_of_row, dims.y, 2u * words_of_row * dims.y * dims.z);
-}
+const RUN_TEXELS: u32 = 4096u;
 
 fn colors_at(place: Place) -> vec4<f32> {
     let axis = frame.slice_axis;
@@ -37,22 +30,27 @@ fn colors_at(place: Place) -> vec4<f32> {
     let right = select(vec3(high.x, low.yz), vec3(low.x, high.y, low.z), axis == 0u);
     let down = select(vec3(low.xy, high.z), vec3(low.x, high.y, low.z), axis == 2u);
     let part = vec2(select(weight.x, weight.y, axis == 0u), select(weight.z, weight.y, axis == 2u));
-    let grid = run_grid();
-    let above = lerp_color(classified_voxel(grid, low), classified_voxel(grid, right), part.x);
-    let below = lerp_color(classified_voxel(grid, down), classified_voxel(grid, high), part.x);
+    let above = lerp_color(classified_voxel(low), classified_voxel(right), part.x);
+    let below = lerp_color(classified_voxel(down), classified_voxel(high), part.x);
     return lerp_color(above, below, part.y);
 }
 
-fn classified_voxel(grid: RunGrid, voxel: vec3<i32>) -> vec4<f32> {
+fn classified_voxel(voxel: vec3<i32>) -> vec4<f32> {
     let at = vec3<u32>(voxel);
-    let word = 2u * (at.x / RUN_WORD_VOXELS + grid.words_of_row * (at.y + grid.rows_of_slice * at.z));
-    let mask = classified_runs.d[word];
+    let dims = vec3<u32>(frame.dims);
+    let words_of_row = (dims.x + RUN_WORD_VOXELS - 1u) / RUN_WORD_VOXELS;
+    let number = at.x / RUN_WORD_VOXELS + words_of_row * (at.y + dims.y * at.z);
+    let word = textureLoad(run_words, in_run_texels(number), 0).xy;
     let bit = 1u << (at.x % RUN_WORD_VOXELS);
-    if (mask & bit) == 0u {
+    if (word.x & bit) == 0u {
         return vec4(0.0);
     }
-    let rank = classified_runs.d[word + 1u] + countOneBits(mask & (bit - 1u));
-    return run_payload(grid.payload, rank);
+    let rank = word.y + countOneBits(word.x & (bit - 1u));
+    return textureLoad(run_payload, in_run_texels(rank), 0);
+}
+
+fn in_run_texels(number: u32) -> vec2<u32> {
+    return vec2(number % RUN_TEXELS, number / RUN_TEXELS);
 }
 
 // As `lerp`, of four numbers.

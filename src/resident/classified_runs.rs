@@ -8,14 +8,19 @@
 //! Lacroute and Levoy, "Fast Volume Rendering Using a Shear-Warp Factorization of the Viewing Transformation", SIGGRAPH
 //! 1994, keep theirs for each of the three axes; with ranks one encoding serves all of them.
 
-use crate::gpu::{Buffer, Error, Gpu, Headless, Memory, Use, buffer_barrier, buffer_to_buffer};
+use crate::gpu::{
+    Buffer, Error, Headless, Image, ImageDesc, ImageKind, Memory, Region, Use, buffer_to_image,
+    image_barrier,
+};
 use crate::volume::{Rescale, RunBits, Volume, Voxels};
 use ash::vk;
 use half::f16;
 use std::sync::Arc;
 
-/// What is staged at once: a multiple of a payload.
-const STAGING_BYTES: u64 = 4 << 20;
+/// Texels of a row (`shaders/lib/channels_on_runs.wgsl`).
+const WIDTH: u32 = 4096;
+/// Rows that are staged at once.
+const STAGED_ROWS: u32 = 64;
 
 /// The floats of a payload.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -37,20 +42,20 @@ pub struct RunsSize {
     pub bytes: u64,
 }
 
-/// The runs of four volumes as `technique::preclassified` makes them: red, green and blue times depth, and depth. In the
-/// device's own memory.
+/// The runs of four volumes as `technique::preclassified` makes them: red, green and blue times depth, and depth.
 #[derive(Debug)]
 pub struct ClassifiedRuns {
-    buffer: Buffer,
+    words: Image,
+    payload: Image,
     size: RunsSize,
 }
 
 impl PayloadFloats {
-    /// Bytes of the four numbers of a voxel.
-    fn bytes(self) -> usize {
+    /// Of the four numbers of a voxel.
+    fn format(self) -> vk::Format {
         match self {
-            Self::Half => 4 * size_of::<f16>(),
-            Self::Single => 4 * size_of::<f32>(),
+            Self::Half => vk::Format::R16G16B16A16_SFLOAT,
+            Self::Single => vk::Format::R32G32B32A32_SFLOAT,
         }
     }
 
@@ -94,7 +99,7 @@ impl ClassifiedRuns {
     /// on one grid, or have numbers larger than such floats can be.
     ///
     /// # Errors
-    /// Where the device gives no memory, or has no buffers of that size.
+    /// Where the device gives no memory, or has no images of that size.
     pub fn new(
         device: &mut Headless,
         volumes: [&Volume; 4],
@@ -106,39 +111,34 @@ impl ClassifiedRuns {
         let validity = volumes[3].validity.as_deref();
         let is_full = |n: usize| numbers[3][n] > 0.0 && validity.is_none_or(|valid| valid[n] != 0);
         let bits = RunBits::of_rows(volumes[3].dims, is_full);
-        let words: &[u8] = bytemuck::cast_slice(bits.words());
-        let payload_bytes = bits.full_count() * floats.bytes() as u64;
-        let bytes = words.len() as u64 + payload_bytes;
-        let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
-        let buffer = Buffer::new(device.gpu(), bytes, usage, Memory::Device, "runs")?;
-        fill(device, &buffer, 0, words.len() as u64, |from, out| {
-            out.copy_from_slice(&words[from..from + out.len()]);
+        let mut words = bits.words().iter();
+        let words = Texels {
+            format: vk::Format::R32G32_UINT,
+            count: words.len() as u64,
+            name: "words of runs",
+        }
+        .image(device, |texel| {
+            let word = words.next();
+            word.map(|word| texel.copy_from_slice(bytemuck::bytes_of(word)))
         })?;
         let mut full = bits.voxels();
-        fill(
-            device,
-            &buffer,
-            words.len() as u64,
-            payload_bytes,
-            |_, out| {
-                for (out, n) in out.chunks_exact_mut(floats.bytes()).zip(&mut full) {
-                    floats.encode(numbers.map(|of| of[n]), out);
-                }
-            },
-        )?;
-        let gpu = Arc::clone(device.gpu());
-        device.run(|cmd| {
-            // SAFETY: the buffer lives until `run` has waited, and nothing else knows it yet.
-            unsafe { buffer_barrier(&gpu, cmd, &buffer, Use::TransferWrite, Use::ComputeRead) };
-            Ok::<(), Error>(())
+        let payload = Texels {
+            format: floats.format(),
+            count: bits.full_count(),
+            name: "payload of runs",
+        }
+        .image(device, |texel| {
+            let voxel = full.next();
+            voxel.map(|n| floats.encode(numbers.map(|of| of[n]), texel))
         })?;
         Ok(Some(Self {
             size: RunsSize {
                 full: bits.full_count(),
                 runs: bits.run_count(),
-                bytes,
+                bytes: bytes_of(&words) + bytes_of(&payload),
             },
-            buffer,
+            words,
+            payload,
         }))
     }
 
@@ -147,38 +147,85 @@ impl ClassifiedRuns {
         self.size
     }
 
-    /// Words, and behind them the payload (`shaders/lib/channels_on_runs.wgsl`).
-    pub(crate) fn buffer(&self) -> &Buffer {
-        &self.buffer
+    /// In [`Use::Sampled`], as the payload is.
+    pub(crate) fn words(&self) -> &Image {
+        &self.words
+    }
+
+    pub(crate) fn payload(&self) -> &Image {
+        &self.payload
     }
 }
 
-/// Fills `bytes` of a buffer from `first` on, in parts: `write` gets how many bytes come before a part, and its place.
-fn fill(
-    device: &mut Headless,
-    buffer: &Buffer,
-    first: u64,
-    bytes: u64,
-    mut write: impl FnMut(usize, &mut [u8]),
-) -> Result<(), Error> {
-    if bytes == 0 {
-        return Ok(());
+fn bytes_of(image: &Image) -> u64 {
+    let bytes = Region::whole(image).bytes(image.format());
+    bytes.expect("a format of ours")
+}
+
+/// So many texels in rows.
+#[derive(Clone, Copy)]
+struct Texels {
+    format: vk::Format,
+    count: u64,
+    name: &'static str,
+}
+
+impl Texels {
+    /// Their image, and one texel where there are none. `write` puts the next one into its place; behind the last it gives `None`, and
+    /// the rest of the last row is 0.
+    fn image(
+        self,
+        device: &mut Headless,
+        mut write: impl FnMut(&mut [u8]) -> Option<()>,
+    ) -> Result<Image, Error> {
+        let gpu = Arc::clone(device.gpu());
+        let count = self.count.max(1);
+        let height = count.div_ceil(WIDTH.into());
+        let desc = ImageDesc {
+            kind: ImageKind::D2,
+            extent: [
+                count.min(WIDTH.into()) as u32,
+                height.try_into().unwrap_or(u32::MAX),
+                1,
+            ],
+            format: self.format,
+            usage: vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST,
+            name: self.name,
+        };
+        let image = Image::new(&gpu, &desc)?;
+        let [width, height, _] = desc.extent;
+        let part = |first: u32| Region {
+            origin: [0, first, 0],
+            extent: [width, STAGED_ROWS.min(height - first), 1],
+        };
+        let bytes = |part: Region| part.bytes(self.format).expect("a format of ours");
+        let texel_bytes = bytes(part(0)) / u64::from(part(0).extent[1] * width);
+        let usage = vk::BufferUsageFlags::TRANSFER_SRC;
+        let staging = Buffer::new(&gpu, bytes(part(0)), usage, Memory::Upload, "staged runs")?;
+        for first in (0..height).step_by(STAGED_ROWS as usize) {
+            let part = part(first);
+            staging.write_with(0, bytes(part), |out| {
+                for texel in out.chunks_exact_mut(texel_bytes as usize) {
+                    if write(texel).is_none() {
+                        texel.fill(0);
+                    }
+                }
+            })?;
+            let before = match first {
+                0 => Use::Nothing,
+                _ => Use::Sampled,
+            };
+            device.run(|cmd| {
+                // SAFETY: recorded outside rendering; both live until `run` has waited, and nothing else knows the image yet; the host
+                // has written these rows before.
+                unsafe {
+                    image_barrier(&gpu, cmd, &image, before, Use::TransferWrite);
+                    buffer_to_image(&gpu, cmd, &staging, 0, &image, part)?;
+                    image_barrier(&gpu, cmd, &image, Use::TransferWrite, Use::Sampled);
+                }
+                Ok(())
+            })?;
+        }
+        Ok(image)
     }
-    let gpu: Arc<Gpu> = Arc::clone(device.gpu());
-    let usage = vk::BufferUsageFlags::TRANSFER_SRC;
-    let size = bytes.min(STAGING_BYTES);
-    let staging = Buffer::new(&gpu, size, usage, Memory::Upload, "staging of runs")?;
-    for from in (0..bytes).step_by(STAGING_BYTES as usize) {
-        let count = STAGING_BYTES.min(bytes - from);
-        staging.write_with(0, count, |out| write(from as usize, out))?;
-        let part = vk::BufferCopy::default()
-            .dst_offset(first + from)
-            .size(count);
-        device.run(|cmd| {
-            // SAFETY: recorded outside rendering; both live until `run` has waited, nothing else knows them yet, and the host has
-            // written this part before.
-            unsafe { buffer_to_buffer(&gpu, cmd, &staging, buffer, &[part]) }
-        })?;
-    }
-    Ok(())
 }

@@ -101,8 +101,10 @@ impl Inputs<'_> {
         let full = full.unwrap_or(self.ring.buffer());
         given.push(("full_voxels", Resource::Storage(full)));
         let runs = self.volume.runs();
-        let runs = runs.map_or(self.ring.buffer(), ClassifiedRuns::buffer);
-        given.push(("classified_runs", Resource::Storage(runs)));
+        let words = runs.map_or(self.volume.blue_noise(), ClassifiedRuns::words);
+        let payload = runs.map_or(self.volume.no_depth(), ClassifiedRuns::payload);
+        given.push(("run_words", Resource::sampled(words)));
+        given.push(("run_payload", Resource::sampled(payload)));
         given.extend_from_slice(outputs);
         if !outputs.iter().any(|(name, _)| *name == "host_depth") {
             given.push(("host_depth", Resource::sampled(self.volume.no_depth())));
