@@ -162,6 +162,8 @@ const ADAPTIVE: Slot = slot("inputs", &["adaptive"]);
 const WHOLE: Slot = slot("holes", &["none"]);
 /// Whether volumes that are mixed lie on the grid of the first, or on grids of their own.
 const GRIDS: Slot = constant("grids", &["shared", "own"]);
+/// The same of volumes of colours, which may be classified voxels in runs.
+const COLOR_GRIDS: Slot = constant("grids", &["shared", "own", "runs"]);
 /// Whether light falls on slabs, and on samples between slices.
 const LIGHT: Slot = constant("light", &["unlit", "lit"]);
 /// The same of volumes that are mixed, where light may be hindered on its way.
@@ -169,6 +171,8 @@ const MIXED_LIGHT: Slot = constant("light", &["unlit", "lit", "hindered"]);
 /// What is in the way of light, where it is more than one volume.
 const MATTER: Slot = constant("matter", &["of_channels", "of_colors"]);
 const MIXED: Slot = slot("inputs", &["channels", "colors"]);
+const CHANNELS: Slot = slot("inputs", &["channels"]);
+const COLORS: Slot = slot("inputs", &["colors"]);
 const MODE: Slot = slot("mode", &["composite"]);
 /// Modes that slicers do not have leave the lattice of slicers to them.
 const RAY: Slot = slot("lattice", &["ray"]);
@@ -243,7 +247,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         &[
             LINE,
             MODE,
-            MIXED,
+            CHANNELS,
             LATTICE,
             NARROW,
             HOLES,
@@ -258,13 +262,43 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         &[
             LINE,
             MODE,
-            MIXED,
+            COLORS,
+            LATTICE,
+            NARROW,
+            HOLES,
+            TABLE,
+            MIXED_LIGHT,
+            COLOR_GRIDS,
+            LAYERS,
+        ],
+    ),
+    (
+        "raycast",
+        &[
+            LINE,
+            MODE,
+            CHANNELS,
             LATTICE,
             NARROW_FETCHED,
             HOLES,
             POINTS,
             MIXED_LIGHT,
             GRIDS,
+            LAYERS,
+        ],
+    ),
+    (
+        "raycast",
+        &[
+            LINE,
+            MODE,
+            COLORS,
+            LATTICE,
+            NARROW_FETCHED,
+            HOLES,
+            POINTS,
+            MIXED_LIGHT,
+            COLOR_GRIDS,
             LAYERS,
         ],
     ),

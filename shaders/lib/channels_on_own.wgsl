@@ -6,6 +6,7 @@
 
 #import own_{filter}
 #import footprint
+#import colors_of_channels
 
 fn value_in(values: Values, channel: u32, place: Place) -> f32 {
     let own = place_in_channel(channel, place);

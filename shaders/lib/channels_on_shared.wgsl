@@ -1,5 +1,7 @@
 // Channels on the grid of the volume, the same bricks cut out of each.
 
+#import colors_of_channels
+
 fn value_in(values: Values, channel: u32, place: Place) -> f32 {
     // Nothing lies between two labels.
     if frame.channel_is_labels[channel] != 0u {

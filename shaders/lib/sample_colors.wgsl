@@ -23,11 +23,12 @@ fn has_data(place: Place) -> bool {
 }
 
 fn sample_at(place: Place, ray_direction: vec3<f32>) -> Sample {
-    let color = vec3(channel_value(0u, place), channel_value(1u, place), channel_value(2u, place));
+    let values = colors_at(place);
+    let color = values.xyz;
     if frame.channel_count == 3u {
         return Sample(color, luma(color), place, ray_direction);
     }
-    let alpha = channel_value(3u, place);
+    let alpha = values.w;
     // What is transparent has no colour.
     return Sample(clamp(color / max(alpha, 1e-6), vec3(0.0), vec3(1.0)), alpha, place, ray_direction);
 }

@@ -520,6 +520,7 @@ impl<'a> Renderer<'a> {
             longest_submission_ms: submitted.longest_ms,
             filtered_by: filtered.map(|filtered| filtered.by),
             filtered_because: filtered.map(|filtered| filtered.because),
+            runs: on_device.and_then(|renderer| renderer.runs().map(Into::into)),
             ..Stages::default()
         };
         stages.with_view(&self.job.scene(camera).view(&grid, InPixel::CENTER))

@@ -1,5 +1,6 @@
 //! What the work took: the file of `--timings`.
 
+use crate::resident::RunsSize;
 use crate::technique::shear_warp::base_plane;
 use crate::technique::splat::Sheets;
 use crate::technique::{Technique, View};
@@ -69,6 +70,8 @@ pub struct Stages {
     pub filtered_because: Option<&'static str>,
     /// The intermediate image of the last picture by shear-warp; `null` for other techniques.
     pub intermediate: Option<IntermediateImage>,
+    /// The runs of classified voxels that the last picture read, on the device; `null` for other pictures.
+    pub runs: Option<RunsHeld>,
     /// The splats of the last picture; `null` for other techniques.
     pub splat: Option<SplatSize>,
 }
@@ -80,6 +83,24 @@ pub struct IntermediateImage {
     pub extent_base_pixels: [u32; 2],
     /// Base pixels per voxel.
     pub per_voxel: f64,
+}
+
+/// Classified voxels as runs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RunsHeld {
+    /// Voxels whose optical depth is over 0.
+    pub full: u64,
+    /// Longest sequences of them in rows along x.
+    pub runs: u64,
+    /// Bytes of all of it.
+    pub bytes: u64,
+}
+
+impl From<RunsSize> for RunsHeld {
+    fn from(size: RunsSize) -> Self {
+        let RunsSize { full, runs, bytes } = size;
+        Self { full, runs, bytes }
+    }
 }
 
 /// How large splats of a volume are.
@@ -273,6 +294,7 @@ mod tests {
             "filtered_by",
             "filtered_because",
             "intermediate",
+            "runs",
             "splat",
         ] {
             assert!(value.get(key).is_some(), "no {key} in {value}");

@@ -21,6 +21,7 @@ mod path_sky;
 mod path_sums;
 mod paths;
 mod readback;
+mod runs;
 mod skipping;
 mod streaming;
 
@@ -178,10 +179,17 @@ impl<'v> Renderer<'v> {
             self.upload(&Scene { settings, ..*scene })?;
         }
         let mut copied = Copied::of(scene);
-        if copied.is_by_corners {
+        // The same picture comes out the same whatever was drawn before: texels that are there already are as good as corners,
+        // not as runs.
+        if copied.is_by_corners || copied.runs.is_some() {
             let with_texels = copied.with_texels();
             let is_there = |copied| self.resident.contains_key(copied);
-            if is_there(&copied) || (!is_there(&with_texels) && self.upload_corners(copied)?) {
+            let is_lean = is_there(&copied)
+                || match copied.runs {
+                    Some(_) => self.upload_runs(copied)?,
+                    None => !is_there(&with_texels) && self.upload_corners(copied)?,
+                };
+            if is_lean {
                 return Ok(());
             }
             copied = with_texels;
@@ -193,6 +201,7 @@ impl<'v> Renderer<'v> {
                 gradient_source,
                 kept,
                 is_by_corners: _,
+                runs: _,
             } = copied;
             let device = &mut self.device;
             let mut made = match gradient_source {

@@ -17,6 +17,21 @@ pub struct Cell {
     pub stored: VoxelBox,
 }
 
+impl Cell {
+    /// All of a volume.
+    pub fn whole(dims: [u32; 3]) -> Self {
+        let all = VoxelBox {
+            min: [0; 3],
+            max: dims,
+        };
+        Self {
+            index: [0; 3],
+            own: all,
+            stored: all,
+        }
+    }
+}
+
 /// The fewest bricks whose stored voxels fit; `None` where not even single voxels do. `halo` says how many
 /// neighbours are needed on either side along each axis.
 pub fn cut(dims: [u32; 3], halo: [u32; 3], fits: impl Fn([u32; 3]) -> bool) -> Option<Vec<Cell>> {

@@ -6,6 +6,7 @@
 use super::TexelFormat;
 use super::blue_noise::BlueNoiseTexture;
 use super::bricks::Cell;
+use super::classified_runs::ClassifiedRuns;
 use super::footprint_texels::FootprintTexels;
 use super::gradients::KeptGradients;
 use super::plan::Plan;
@@ -79,12 +80,13 @@ pub struct GpuVolume {
     gradient_source: Option<Box<GpuVolume>>,
     kept_gradients: Option<KeptGradients>,
     pub(super) corners: Option<FootprintTexels>,
+    runs: Option<ClassifiedRuns>,
     /// Bound in the place of a mask where every voxel has a value, and of a host's depth buffer where there is none. Nobody
     /// looks at their texels.
     pub(super) no_mask: Image,
     pub(super) no_depth: Image,
     pub(super) blue_noise: BlueNoiseTexture,
-    /// Whether the values lie in the textures, and not in corners alone.
+    /// Whether the values lie in the textures, and not in corners or runs alone.
     pub(super) has_texels: bool,
 }
 
@@ -127,18 +129,17 @@ pub struct Whole {
 
 impl Plan {
     fn make(self, gpu: &Arc<Gpu>, volume: &Volume, cells: &[Cell]) -> Result<GpuVolume, Error> {
-        self.make_with(gpu, volume, cells, None)
+        self.make_with(gpu, volume, cells, true)
     }
 
-    /// With corners the texture is a single texel, which nobody looks at.
+    /// Without texels the texture is a single one, which nobody looks at.
     fn make_with(
         self,
         gpu: &Arc<Gpu>,
         volume: &Volume,
         cells: &[Cell],
-        corners: Option<FootprintTexels>,
+        has_texels: bool,
     ) -> Result<GpuVolume, Error> {
-        let has_texels = corners.is_none();
         let brick = |&cell: &Cell| {
             let stored = cell.stored.dims();
             let mask = || Image::new(gpu, &self.validity(stored));
@@ -168,7 +169,8 @@ impl Plan {
             spline: None,
             gradient_source: None,
             kept_gradients: None,
-            corners,
+            corners: None,
+            runs: None,
             has_texels,
         })
     }
@@ -289,16 +291,35 @@ impl GpuVolume {
         corners: FootprintTexels,
     ) -> Result<Self, Error> {
         let plan = Plan::of(gpu, volume, TextureLayout::Texture3d);
-        let all = VoxelBox {
-            min: [0; 3],
-            max: volume.dims,
+        Ok(Self {
+            corners: Some(corners),
+            ..plan.make_with(gpu, volume, &[Cell::whole(volume.dims)], false)?
+        })
+    }
+
+    /// Objects for classified voxels (red, green and blue times depth, and depth) whose values lie in the runs of the first
+    /// alone, with where they have data. Only pictures whose shaders read runs may be drawn of them.
+    ///
+    /// # Errors
+    /// As [`GpuVolume::new`].
+    pub(crate) fn of_runs(
+        gpu: &Arc<Gpu>,
+        volumes: [&Volume; 4],
+        runs: ClassifiedRuns,
+    ) -> Result<Vec<Self>, Error> {
+        let made = |(number, volume): (usize, &Volume)| {
+            let all = Plan::of(gpu, volume, TextureLayout::Texture3d);
+            // They all have data where the first one has.
+            let plan = Plan {
+                has_holes: all.has_holes && number == 0,
+                ..all
+            };
+            plan.make_with(gpu, volume, &[Cell::whole(volume.dims)], false)
         };
-        let cell = Cell {
-            index: [0; 3],
-            own: all,
-            stored: all,
-        };
-        plan.make_with(gpu, volume, &[cell], Some(corners))
+        let made = volumes.into_iter().enumerate().map(made);
+        let mut made = made.collect::<Result<Vec<_>, _>>()?;
+        made[0].runs = Some(runs);
+        Ok(made)
     }
 
     /// Objects for one brick of a volume that is not all there: `voxels` are those of `cell.stored`. Uploads take them
@@ -373,6 +394,16 @@ impl GpuVolume {
     /// At least one.
     pub fn bricks(&self) -> &[Brick] {
         &self.bricks
+    }
+
+    /// The runs of this volume and the three beside it, where they lie in runs.
+    pub fn runs(&self) -> Option<&ClassifiedRuns> {
+        self.runs.as_ref()
+    }
+
+    /// Whether there are textures to read its values from.
+    pub(crate) fn has_texels(&self) -> bool {
+        self.has_texels
     }
 
     /// True where some voxels have no value.

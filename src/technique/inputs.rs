@@ -8,7 +8,9 @@ use super::{
     SampleInputs, Settings, Skip, SkipBy,
 };
 use crate::gpu::{Bindings, Buffer, Error, Gpu, Image, Layout, ParameterRing, Resource};
-use crate::resident::{Brick, FootprintTexels, GpuTransfer, GpuVolume, TextureLayout};
+use crate::resident::{
+    Brick, ClassifiedRuns, FootprintTexels, GpuTransfer, GpuVolume, TextureLayout,
+};
 use crate::shaders::{MAX_CHANNELS, Shader, find, shader};
 use std::sync::Arc;
 
@@ -98,6 +100,11 @@ impl Inputs<'_> {
         given.push(("cell_ranges", Resource::Storage(ranges)));
         let full = full.unwrap_or(self.ring.buffer());
         given.push(("full_voxels", Resource::Storage(full)));
+        let runs = self.volume.runs();
+        let words = runs.map_or(self.volume.blue_noise(), ClassifiedRuns::words);
+        let payload = runs.map_or(self.volume.no_depth(), ClassifiedRuns::payload);
+        given.push(("run_words", Resource::sampled(words)));
+        given.push(("run_payload", Resource::sampled(payload)));
         given.extend_from_slice(outputs);
         if !outputs.iter().any(|(name, _)| *name == "host_depth") {
             given.push(("host_depth", Resource::sampled(self.volume.no_depth())));
@@ -171,6 +178,8 @@ pub struct ShaderVariant {
     pub is_whole: bool,
     /// Whether volumes that are mixed lie on grids of their own.
     pub has_own_grids: bool,
+    /// Whether classified voxels lie in runs.
+    pub is_in_runs: bool,
     /// Whether light falls on what a constant lights: volumes that are mixed, slabs, samples between slices.
     pub is_lit: bool,
     /// Whether matter is in the way of light that falls on volumes that are mixed.
@@ -227,8 +236,10 @@ impl ShaderVariant {
     pub fn mixed(settings: &Settings, mix: SampleInputs, parts: &[GpuChannel]) -> Self {
         let is_fetched =
             |part: &GpuChannel| part.role != Role::Labels && !part.volume.texel().is_filtered;
+        let is_in_runs = parts[0].volume.runs().is_some();
         let is_by_fetches = settings.conformance
             || settings.filter_by == FilterBy::Fetch
+            || is_in_runs
             || parts.iter().any(is_fetched);
         let has_holes = parts.iter().any(|part| part.volume.has_holes());
         let has_surfaces = settings.shading.as_ref().is_some_and(|s| s.has_surfaces);
@@ -278,6 +289,7 @@ impl ShaderVariant {
             has_own_grids: parts
                 .iter()
                 .any(|part| part.volume.grid() != parts[0].volume.grid()),
+            is_in_runs,
             is_lit: is_lit && (!mix.is_of_one() || !is_point) && settings.mode == Mode::Composite,
             is_hindered: !mix.is_of_one()
                 && settings.wants_light_volume()
@@ -302,15 +314,18 @@ impl ShaderVariant {
     }
 
     /// The parts of a shader's name that say whether light falls by a constant, and whether grids are shared.
-    pub(super) fn light_and_grids(&self) -> &'static str {
-        match (self.is_hindered, self.is_lit, self.has_own_grids) {
-            (false, false, false) => "",
-            (false, false, true) => ".own",
-            (false, true, false) => ".lit",
-            (false, true, true) => ".lit.own",
-            (true, _, false) => ".hindered",
-            (true, _, true) => ".hindered.own",
-        }
+    pub(super) fn light_and_grids(&self) -> String {
+        let light = match (self.is_hindered, self.is_lit) {
+            (false, false) => "",
+            (false, true) => ".lit",
+            (true, _) => ".hindered",
+        };
+        let grids = match (self.is_in_runs, self.has_own_grids) {
+            (true, _) => ".runs",
+            (false, true) => ".own",
+            (false, false) => "",
+        };
+        format!("{light}{grids}")
     }
 
     /// The shader of that name for such pictures: the leanest that there is, [`Self::is_whole`] before one that writes

@@ -8,6 +8,12 @@ const OCTREE: &str = "relation.skipped_by_octree.raycast.ray.composite.perspecti
 const RUNS_UP: &str = "relation.skipped_by_runs.raycast.ray.composite.orthographic";
 const OCTREE_UP: &str = "relation.skipped_by_octree.raycast.ray.composite.orthographic";
 
+/// Classified voxels of shear-warp: their runs, and what is made between them.
+const CLASSIFIED: &str = "relation.runs.shear_warp.composite.nearest.perspective";
+const CLASSIFIED_BETWEEN: &str = "relation.runs.shear_warp.composite.linear_fetch.along_z";
+const CLASSIFIED_ALONG_ROWS: &str = "relation.runs.shear_warp.composite.linear_fetch.along_x";
+const CLASSIFIED_ALONG_Y: &str = "relation.runs.shear_warp.composite.linear_fetch.along_y";
+
 /// What is wrong, how, and the case that must see it.
 pub const VOXEL_FAULTS: &[(&str, Fault, &str)] = &[
     (
@@ -117,5 +123,77 @@ pub const VOXEL_FAULTS: &[(&str, Fault, &str)] = &[
             "(line.at + f32(k) * line.step) + 1.0;",
         ),
         OCTREE,
+    ),
+    (
+        "the last classified voxel of a word of 32 is always empty",
+        Shader(
+            "lib/channels_on_runs.wgsl",
+            "in_run_texels(number), 0).xy;",
+            "in_run_texels(number), 0).xy & vec2(0x7fffffffu, 0xffffffffu);",
+        ),
+        CLASSIFIED,
+    ),
+    (
+        "payloads are counted from those before the next word",
+        Shader(
+            "lib/channels_on_runs.wgsl",
+            "let rank = word.y + countOneBits",
+            "let rank = textureLoad(run_words, in_run_texels(number + 1u), 0).y + countOneBits",
+        ),
+        CLASSIFIED,
+    ),
+    (
+        "a classified voxel counts itself",
+        Shader(
+            "lib/channels_on_runs.wgsl",
+            "countOneBits(word.x & (bit - 1u))",
+            "countOneBits(word.x & (bit | (bit - 1u)))",
+        ),
+        CLASSIFIED,
+    ),
+    (
+        "rows of classified voxels end with their last whole word",
+        Shader(
+            "lib/channels_on_runs.wgsl",
+            "(dims.x + RUN_WORD_VOXELS - 1u) / RUN_WORD_VOXELS",
+            "dims.x / RUN_WORD_VOXELS",
+        ),
+        CLASSIFIED,
+    ),
+    (
+        "behind the end of a row lies an empty classified voxel",
+        Shader(
+            "lib/channels_on_runs.wgsl",
+            "select(taps.max, slice, across)",
+            "select(taps.min + 1, slice, across)",
+        ),
+        CLASSIFIED_BETWEEN,
+    ),
+    (
+        "between classified voxels both axes of a slice have one weight",
+        Shader(
+            "lib/channels_on_runs.wgsl",
+            "lerp_color(above, below, part.y)",
+            "lerp_color(above, below, part.x)",
+        ),
+        CLASSIFIED_BETWEEN,
+    ),
+    (
+        "across rows of classified voxels the second axis is the first",
+        Shader(
+            "lib/channels_on_runs.wgsl",
+            "select(vec3(high.x, low.yz), vec3(low.x, high.y, low.z), axis == 0u)",
+            "vec3(high.x, low.yz)",
+        ),
+        CLASSIFIED_ALONG_ROWS,
+    ),
+    (
+        "classified voxels are weighed by another axis than they lie along",
+        Shader(
+            "lib/channels_on_runs.wgsl",
+            "select(weight.z, weight.y, axis == 2u)",
+            "weight.y",
+        ),
+        CLASSIFIED_ALONG_Y,
     ),
 ];

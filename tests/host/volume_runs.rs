@@ -1,7 +1,7 @@
 //! Run-length encoding against the set itself: round trip, maximal runs, three axes, ranks.
 
 use crate::voxel_sets::{random, sets, voxels};
-use stratavox::volume::{RankWord, Run, Runs, VoxelSet};
+use stratavox::volume::{RankWord, Run, RunBits, Runs, VoxelSet};
 
 /// What is wrong, where anything is.
 type Found = Result<(), String>;
@@ -217,6 +217,12 @@ fn the_rank_of_a_voxel_is_where_its_payload_lies() {
             assert_eq!(check_ranks(&runs, rank), Ok(()));
             let ones = bits.words().iter().map(|word| word.mask.count_ones());
             assert_eq!(u64::from(ones.sum::<u32>()), set.full_count());
+            assert_eq!(bits.full_count(), set.full_count());
+            assert_eq!(bits.run_count(), runs.run_count() as u64);
+            let [j, k] = [(axis + 1) % 3, (axis + 2) % 3];
+            let number = |v: [u32; 3]| (v[j] + set.dims()[j] * v[k]) * count + v[axis];
+            let numbers = runs.voxels().map(|voxel| number(voxel) as usize);
+            assert!(bits.voxels().eq(numbers), "{:?}", set.dims());
             assert_eq!(runs.voxels().count() as u64, set.full_count());
         }
     }
@@ -254,6 +260,17 @@ fn ranks_that_are_not_those_of_payloads_are_seen() {
             .count();
         println!("{what}: {seen} of {} sets", sets().len());
         assert!(seen > 5, "{what}: {seen} sets");
+    }
+}
+
+/// Of the bits of a set alone, the same words.
+#[test]
+fn words_need_no_runs() {
+    for set in sets() {
+        let [nx, ny, _] = set.dims();
+        let voxel = |n: u32| [n % nx, n / nx % ny, n / nx / ny];
+        let made = RunBits::of_rows(set.dims(), |n| set.contains(voxel(n as u32)));
+        assert_eq!(made, Runs::new(&set, 0).bits(), "{:?}", set.dims());
     }
 }
 

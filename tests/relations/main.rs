@@ -10,6 +10,7 @@ mod streaming_shared;
 
 mod blending;
 mod bricks;
+mod classified_runs;
 mod domain;
 mod lattice;
 mod macro_cells;

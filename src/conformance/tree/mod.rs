@@ -8,6 +8,7 @@ mod points;
 mod probe;
 mod reference;
 mod relation;
+mod runs;
 mod scatter;
 mod seen;
 mod shadow;
@@ -33,6 +34,7 @@ pub fn cases() -> Vec<Case> {
     cases.extend(relation::cases());
     cases.extend(reference::cases());
     cases.extend(warp::cases());
+    cases.extend(runs::cases());
     cases.extend(splat::cases());
     cases.extend(points::cases());
     cases.extend(scatter::cases());

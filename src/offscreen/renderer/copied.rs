@@ -1,6 +1,6 @@
 //! In which forms volumes are on the device: what pictures read, and nothing beside it.
 
-use crate::resident::{KeptOperator, TextureLayout};
+use crate::resident::{KeptOperator, PayloadFloats, TextureLayout};
 use crate::scene::Scene;
 use crate::technique::{GradientSource, GradientStorage};
 use crate::volume::Spline;
@@ -18,6 +18,8 @@ pub(super) struct Copied {
     pub kept: Option<KeptOperator>,
     /// Footprint texels in place of texels, where there can be any.
     pub is_by_corners: bool,
+    /// Runs of classified voxels in place of texels, where there can be any.
+    pub runs: Option<PayloadFloats>,
 }
 
 impl Copied {
@@ -33,6 +35,7 @@ impl Copied {
             layout,
             is_by_corners: scene.settings.reads_footprint_texels_alone(scene.mix())
                 && scene.volumes().len() == 1,
+            runs: scene.reads_runs(),
             spline: scene.settings.filter.spline(),
             gradient_source: gradient_source.filter(|_| scene.has_gradients()),
         }
@@ -40,10 +43,11 @@ impl Copied {
 }
 
 impl Copied {
-    /// What there is where corners alone cannot be had.
+    /// What there is where neither corners nor runs can be had.
     pub fn with_texels(self) -> Self {
         Self {
             is_by_corners: false,
+            runs: None,
             ..self
         }
     }

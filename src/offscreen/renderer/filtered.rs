@@ -24,6 +24,7 @@ impl Renderer<'_> {
         };
         let because = match (by, settings.filter_by) {
             (_, _) if settings.conformance => "a conformance picture",
+            (_, _) if variant.is_in_runs => "classified voxels lie in runs",
             ("fetch", _) if matches!(settings.filter, Filter::Nearest | Filter::CatmullRom) => {
                 "the filter reads voxels one by one"
             }

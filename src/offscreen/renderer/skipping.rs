@@ -279,7 +279,8 @@ impl Renderer<'_> {
         if volume.grid() != parts[0].volume.grid() {
             return MacroCells::of_channel(gpu, parts[0].volume, volume, halo, voxels);
         }
-        match gpu.is_cpu() && volume.spline().is_none() {
+        let is_by_host = gpu.is_cpu() || !volume.has_texels();
+        match is_by_host && volume.spline().is_none() {
             true => MacroCells::of_voxels(gpu, volume, halo, voxels),
             false => MacroCells::new(gpu, volume, halo),
         }

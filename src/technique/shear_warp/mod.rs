@@ -19,6 +19,7 @@ pub(crate) use base_plane::intermediate_room;
 pub use base_plane::{BasePlane, base_plane};
 
 use super::registry::TechniqueDesc;
+use super::stack_axis::stack_axis;
 use super::{Error, Lattice, Settings};
 use crate::resident::TextureLayout;
 
@@ -50,7 +51,10 @@ pub(super) static DESC: TechniqueDesc = TechniqueDesc {
     layouts: &[TextureLayout::Texture3d],
     layout_of: |_| TextureLayout::Texture3d,
     longest_sample_count: |view| view.longest_sample_count(),
-    set_slices: |_, _, _| 0,
+    set_slices: |view, _, fields| {
+        fields.slice_axis = stack_axis(view) as u32;
+        0
+    },
     gather: gather::shear_warp,
     slice_shaders: None,
 };

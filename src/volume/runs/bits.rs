@@ -22,6 +22,7 @@ pub struct RankWord {
 /// The words of all rows.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RunBits {
+    row_length: usize,
     words_per_row: usize,
     words: Vec<RankWord>,
 }
@@ -50,6 +51,7 @@ impl Runs {
             first = next.expect("less than 2^32 full voxels");
         }
         RunBits {
+            row_length: self.dims[self.axis] as usize,
             words_per_row,
             words,
         }
@@ -69,6 +71,71 @@ fn mark(words: &mut [RankWord], start: u32, end: u32) {
 }
 
 impl RunBits {
+    /// Those of rows along x of a grid: `is_full` is asked once a voxel, by its number, x fastest, then y, then z. The same as
+    /// [`Runs::bits`] of that set along x, without the runs.
+    ///
+    /// # Panics
+    /// As [`Runs::bits`].
+    pub fn of_rows(dims: [u32; 3], mut is_full: impl FnMut(usize) -> bool) -> Self {
+        let [row_length, ny, nz] = dims.map(|n| n as usize);
+        let words_per_row = row_length.div_ceil(VOXELS as usize);
+        let mut words = Vec::with_capacity(words_per_row * ny * nz);
+        let mut first = 0_u32;
+        for row in 0..ny * nz {
+            for start in (0..row_length).step_by(VOXELS as usize) {
+                let count = (row_length - start).min(VOXELS as usize);
+                let mask = (0..count).fold(0, |mask, bit| {
+                    mask | u32::from(is_full(row * row_length + start + bit)) << bit
+                });
+                words.push(RankWord { mask, first });
+                let next = first.checked_add(mask.count_ones());
+                first = next.expect("less than 2^32 full voxels");
+            }
+        }
+        Self {
+            row_length,
+            words_per_row,
+            words,
+        }
+    }
+
+    /// How many voxels are full.
+    pub fn full_count(&self) -> u64 {
+        self.words.last().map_or(0, |word| {
+            u64::from(word.first) + u64::from(word.mask.count_ones())
+        })
+    }
+
+    /// How many runs there are: full voxels with an empty one, or the end of the row, before them.
+    pub fn run_count(&self) -> u64 {
+        let of_row = |words: &[RankWord]| {
+            let before = [0]
+                .into_iter()
+                .chain(words.iter().map(|word| word.mask >> (VOXELS - 1)));
+            let starts = words.iter().zip(before);
+            let starts = starts.map(|(word, before)| word.mask & !(word.mask << 1 | before));
+            starts
+                .map(|starts| u64::from(starts.count_ones()))
+                .sum::<u64>()
+        };
+        self.words
+            .chunks(self.words_per_row.max(1))
+            .map(of_row)
+            .sum()
+    }
+
+    /// Numbers of the full voxels in the order of their ranks: voxel `i` of a row is `row` times the length of a row + `i`.
+    pub fn voxels(&self) -> impl Iterator<Item = usize> + '_ {
+        let rows = self.words.chunks(self.words_per_row.max(1)).enumerate();
+        rows.flat_map(move |(row, words)| {
+            words.iter().enumerate().flat_map(move |(number, word)| {
+                let bits = (0..VOXELS).filter(move |bit| word.mask >> bit & 1 == 1);
+                let first = row * self.row_length + number * VOXELS as usize;
+                bits.map(move |bit| first + bit as usize)
+            })
+        })
+    }
+
     /// All words, row by row.
     pub fn words(&self) -> &[RankWord] {
         &self.words
