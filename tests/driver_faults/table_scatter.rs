@@ -169,15 +169,6 @@ pub const SCATTER_FAULTS: &[(&str, Fault, &str)] = &[
         ISOTROPIC,
     ),
     (
-        "light is not followed where little of it is left",
-        Shader(
-            "lib/light_ray.wgsl",
-            "if k > ray.whole || depth > frame.scattering_depth {",
-            "if k > ray.whole || depth > min(frame.scattering_depth, 9.0) {",
-        ),
-        MARCH,
-    ),
-    (
         "extinctions are those of a voxel, not of a length",
         Shader(
             "pathtrace.wgsl",
