@@ -62,6 +62,9 @@ const OF_SKY: u32 = 3u;
 const FEWEST_BOUNCES: u32 = 4u;
 const LEAST: f32 = 0.1;
 
+// Paths that end by chance behind as many rounds as these do so slowly: drivers leave room for it.
+const MANY_ROUNDS: u32 = 128u;
+
 // Ways from a surface begin so far before it, in smallest spacings.
 const LEAVES_BY: f32 = 1e-3;
 
@@ -448,7 +451,7 @@ fn kept(path: Path, u: f32) -> f32 {
         part = most / LEAST;
     }
     if path.rounds > frame.path_rounds {
-        part *= 0.875;
+        part *= select(0.5, 0.875, frame.path_rounds >= MANY_ROUNDS);
     }
     if part == 1.0 {
         return 1.0;

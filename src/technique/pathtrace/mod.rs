@@ -197,10 +197,12 @@ fn paths_of_loop(function: Option<&TransferFunction>) -> u32 {
     }
 }
 
-/// Turns of loops after which the paths of one pass end by chance: three quarters of what drivers that count them allow, so that all
+/// Turns of loops after which the paths of one pass end by chance: three quarters of what drivers that count them allow, or of long rounds half, so that all
 /// end long before ([`crate::gpu::Caps::max_loop_turns`]). Such drivers go once through each loop that stands there, whether it is
 /// asked for or not, and once more through each than its turns.
-const MOST_TURNS: u32 = 3 << 14;
+const MOST_TURNS: [u32; 2] = [3 << 14, 1 << 15];
+/// More turns make a round long.
+const LONG_ROUND: u32 = 96;
 /// Of one turn of a way: itself, and a medium's two searches.
 const TURNS_OF_EVENT: u32 = 1 + 2;
 /// Of a round: itself, the end of its turns, a ray's place in its pixel, a function that returns early, and a cube root.
@@ -341,7 +343,8 @@ impl MediumFields {
         let [event, collision] = self.turns;
         let ways = 3 * (frame.clip_plane_count + 1);
         let round = TURNS_OF_WAY * (TURNS_OF_EVENT + event) + TURNS_OF_ROUND + ways + collision;
-        frame.path_rounds = MOST_TURNS / self.paths_of_loop / round;
+        let most = MOST_TURNS[usize::from(round > LONG_ROUND)];
+        frame.path_rounds = most / self.paths_of_loop / round;
         frame.path_surface = self.surface;
     }
 }

@@ -10,7 +10,7 @@ use super::surface::{reflected, reflection, reflection_density};
 use super::walk::{Step, Walk};
 use crate::ray::{Ray, pixel_ray};
 use crate::real::{Real, add, dot, scale};
-use crate::shaders::{Frame, TURNS_OF_WAY};
+use crate::shaders::{Frame, MANY_ROUNDS, TURNS_OF_WAY};
 use crate::technique::reference::{Gathered, Samples};
 
 /// Numbers of a draw: of the way, of a collision, of the direction behind it and of that to a sky.
@@ -289,7 +289,8 @@ impl<R: Real> Path<R> {
             part = most / least;
         }
         if self.rounds > frame.path_rounds {
-            part = part * R::from_f64(0.875);
+            let is_slow = frame.path_rounds >= MANY_ROUNDS;
+            part = part * R::from_f64(if is_slow { 0.875 } else { 0.5 });
         }
         match u < part {
             true => one / part,
