@@ -751,7 +751,7 @@ typedef struct sv_path_tracing {
     const void *next;
     // Paths a pixel, at most: frames after it show the same. 0 is 64.
     uint32_t samples;
-    // So many more in each frame, at most 8, of a driver that counts the turns of loops 4. 0 is 1.
+    // So many more in each frame, at most 8, of a driver that counts the turns of loops 4 (through functions of gradients 2). 0 is 1.
     uint32_t samples_per_frame;
     // Other numbers, other noise.
     uint32_t seed;

@@ -12,7 +12,9 @@
 //     P = a / (a + b)       a = mean of W sigma                  b = mean of W (majorant - sigma)
 //     real   W *= sigma / majorant / P                           null   W *= (1 - sigma / majorant) / (1 - P)
 //
-// The picture is the mean over paths. One loop over events: lanes that have ended a path go on with the next.
+// The picture is the mean over paths. One loop over rounds: what is rare, collisions and ends of paths, comes once a round, behind
+// some turns of the way to the next one. Drivers on CPUs go through all that stands in a loop at each of its turns, whatever is asked,
+// and on others the invocations of a group are seldom at the same. Lanes that have ended a path go on with the next.
 // CPU reference: src/technique/pathtrace/reference.rs.
 
 #import host_depth
@@ -36,11 +38,18 @@
 //     mean += (sum of the n - n mean) / (b + n)
 @group(0) @binding(6) var picture: texture_storage_2d<rgba32float, read_write>;
 
-// What an invocation is at.
-const NEXT: u32 = 0u;
-const PATH: u32 = 1u;
-const SHADOW: u32 = 2u;
+// What an invocation is at: a path on its way, or a shadow ray; matter that a path has met; light that has been looked for there; a
+// path that has left, one that has ended, the end of all.
+const PATH: u32 = 0u;
+const SHADOW: u32 = 1u;
+const MET: u32 = 2u;
 const SCATTER: u32 = 3u;
+const LEFT: u32 = 4u;
+const NEXT: u32 = 5u;
+const LAST: u32 = 6u;
+
+// Turns of a way in a round, at most.
+const TURNS_OF_WAY: u32 = 8u;
 
 // Numbers of a draw: of the way, of a collision, of the direction behind it and of that to a sky. They differ in low bits:
 // numbers that pcg4d makes of keys that differ in the highest bits alone are correlated.
@@ -52,6 +61,9 @@ const OF_SKY: u32 = 3u;
 // Behind so many bounces, weights under LEAST end by chance.
 const FEWEST_BOUNCES: u32 = 4u;
 const LEAST: f32 = 0.1;
+
+// Paths that end by chance behind as many rounds as these do so slowly: drivers leave room for it.
+const MANY_ROUNDS: u32 = 128u;
 
 // Ways from a surface begin so far before it, in smallest spacings.
 const LEAVES_BY: f32 = 1e-3;
@@ -72,6 +84,7 @@ struct Path {
     bounces: u32,
     // Turns so far: the number of the next draw.
     draw: u32,
+    rounds: u32,
     has_met: bool,
     // Of its direction, per steradian.
     density: f32,
@@ -91,6 +104,8 @@ struct Collision {
     reach: f32,
     // Which side of surfaces it is on.
     rank: i32,
+    // A random number of its own, which of several volumes it is in.
+    met_by: f32,
 }
 
 @compute @workgroup_size(8, 8)
@@ -110,101 +125,31 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
     var at: Collision;
     var layers: PathLayers;
     loop {
-        if state == NEXT {
-            if sample == end {
-                break;
-            }
-            key.y = sample;
-            key.z = 0u;
-            sample++;
-            let numbers = random_numbers(key);
-            walk = walk_along(through_lens(pixel_ray(vec2<f32>(pixel) + numbers.xy), numbers.zw));
-            let visible = visible_interval(vec2(walk.t, walk.end), walk.world, vec2<f32>(pixel));
-            walk.t = visible.x;
-            walk.end = visible.y;
-            path = Path(vec3(1.0), vec3(0.0), 0u, 1u, false, 0.0);
-            state = PATH;
-        }
-        key.z = NUMBERS_OF_DRAW * path.draw;
-        path.draw++;
-        let u = random_numbers(key);
-        let is_tentative = step_by(&walk, u.x);
-        // Of each colour, that a tentative collision is a real one.
-        var chances = vec3(0.0);
-        var color = vec3(0.0);
-        let place = walk.voxel.origin + walk.t * walk.voxel.direction;
-        if is_tentative {
-            layers = with_sample(layers);
-        }
-        if is_tentative && is_matter(place) {
-            let matter = matter_at(place);
-            chances = min(matter.extinctions * frame.path_density / walk.majorant, vec3(1.0));
-            color = matter.color;
-            if frame.emission_point_count != 0u && state == PATH {
-                let light = path.weight * matter.emission / walk.majorant;
-                path.radiance += light;
-                layers = with_light(layers, light, path.bounces);
-            }
-        }
-        let is_crossed = has_crossed(walk.levels);
-        if is_crossed {
-            let level = frame.level_colors[crossed_level(walk.levels)];
-            chances = vec3(level.w);
-            color = level.xyz;
-        }
-        let chance = chance_of(path.weight, chances);
-        let has_left = !is_tentative && !is_crossed && walk.t >= walk.end;
-        if state == SHADOW {
-            at.through *= 1.0 - chances;
-            let most = max(at.through.x, max(at.through.y, at.through.z));
-            if most < LEAST {
-                at.through *= select(0.0, LEAST / most, u.y * LEAST < most);
-            }
-            if has_left || all(at.through == vec3(0.0)) {
-                let light = path.weight * at.light * at.through;
-                path.radiance += light;
-                layers = with_light(layers, light, path.bounces + 1u);
-                state = SCATTER;
-            }
-        } else if has_left {
-            let light = path.weight * sky_of(path, walk.world.direction);
-            path.radiance += light;
-            if path.has_met {
-                layers = with_light(layers, light, path.bounces);
-            }
-            path.has_met = path.has_met || frame.path_sky_shown != 0u;
-            state = NEXT;
-        } else if u.y < chance {
-            path.weight *= of_colors(chances, chance);
-            // Without bounces matter shines: by itself, or in its colours.
-            if frame.path_bounces == 0u && frame.emission_point_count == 0u {
-                path.radiance = path.weight * color;
-                layers = with_light(layers, path.radiance, 0u);
-            }
+        if state == MET {
             let is_last = path.bounces == frame.path_bounces;
+            let draw = NUMBERS_OF_DRAW * (path.draw - 1u);
             var numbers: vec4<f32>;
             if !is_last || (leaves_layers() && !path.has_met) {
-                key.z += OF_COLLISION;
+                key.z = draw + OF_COLLISION;
                 numbers = random_numbers(key);
                 at.place = walk.world.origin + walk.t * walk.world.direction;
                 at.direction = walk.world.direction;
                 at.rank = walk.levels.rank;
-                if is_crossed {
+                if has_crossed(walk.levels) {
                     at.normal = facing((frame.voxel_from_world * walk.levels.slope).xyz, at.direction);
                     at.place += LEAVES_BY * frame.smallest_spacing * at.normal;
                     at.rank = walk.levels.before;
                 } else {
-                    at.normal = normal_at(place, at.direction, vec2(numbers.x, u.z));
+                    let place = walk.voxel.origin + walk.t * walk.voxel.direction;
+                    at.normal = normal_at(place, at.direction, vec2(numbers.x, at.met_by));
                 }
-                at.albedo = color * frame.path_albedo;
             }
             if !path.has_met {
                 layers = with_first(layers, at.albedo, at.normal, walk.t);
             }
             path.has_met = true;
-            if is_last {
-                state = NEXT;
-            } else {
+            state = NEXT;
+            if !is_last {
                 at.through = vec3(1.0);
                 if !is_coated(at) {
                     path.weight *= at.albedo;
@@ -218,8 +163,6 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
                     state = SHADOW;
                 }
             }
-        } else {
-            path.weight *= of_colors(1.0 - chances, 1.0 - chance);
         }
         if state == SCATTER {
             key.z = NUMBERS_OF_DRAW * path.draw + OF_DIRECTION;
@@ -233,8 +176,93 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
             walk = walk_from(at, next.direction);
             state = select(NEXT, PATH, any(path.weight > vec3(0.0)));
         }
+        if state == LEFT {
+            let light = path.weight * sky_of(path, walk.world.direction);
+            path.radiance += light;
+            if path.has_met {
+                layers = with_light(layers, light, path.bounces);
+            }
+            path.has_met = path.has_met || frame.path_sky_shown != 0u;
+            state = NEXT;
+        }
         if state == NEXT {
             sum += vec4(path.radiance, f32(path.has_met));
+            state = LAST;
+            if sample != end {
+                key.y = sample;
+                key.z = 0u;
+                sample++;
+                let numbers = random_numbers(key);
+                walk = walk_along(through_lens(pixel_ray(vec2<f32>(pixel) + numbers.xy), numbers.zw));
+                let visible = visible_interval(vec2(walk.t, walk.end), walk.world, vec2<f32>(pixel));
+                walk.t = visible.x;
+                walk.end = visible.y;
+                path = Path(vec3(1.0), vec3(0.0), 0u, 1u, 0u, false, 0.0);
+                state = PATH;
+            }
+        }
+        // Not where the last path ends: llvmpipe of Mesa 22 counted that path again in the rounds of others.
+        if state == LAST {
+            break;
+        }
+        path.rounds++;
+        for (var turn = 0u; turn < TURNS_OF_WAY && state <= SHADOW; turn++) {
+            key.z = NUMBERS_OF_DRAW * path.draw;
+            path.draw++;
+            let u = random_numbers(key);
+            let is_tentative = step_by(&walk, u.x);
+            // Of each colour, that a tentative collision is a real one.
+            var chances = vec3(0.0);
+            var color = vec3(0.0);
+            let place = walk.voxel.origin + walk.t * walk.voxel.direction;
+            if is_tentative {
+                layers = with_sample(layers);
+            }
+            if is_tentative && is_matter(place) {
+                let matter = matter_at(place);
+                chances = min(matter.extinctions * frame.path_density / walk.majorant, vec3(1.0));
+                color = matter.color;
+                if frame.emission_point_count != 0u && state == PATH {
+                    let light = path.weight * matter.emission / walk.majorant;
+                    path.radiance += light;
+                    layers = with_light(layers, light, path.bounces);
+                }
+            }
+            let is_crossed = has_crossed(walk.levels);
+            if is_crossed {
+                let level = frame.level_colors[crossed_level(walk.levels)];
+                chances = vec3(level.w);
+                color = level.xyz;
+            }
+            let chance = chance_of(path.weight, chances);
+            let has_left = !is_tentative && !is_crossed && walk.t >= walk.end;
+            if state == SHADOW {
+                at.through *= 1.0 - chances;
+                let most = max(at.through.x, max(at.through.y, at.through.z));
+                if most < LEAST {
+                    at.through *= select(0.0, LEAST / most, u.y * LEAST < most);
+                }
+                if has_left || all(at.through == vec3(0.0)) {
+                    let light = path.weight * at.light * at.through;
+                    path.radiance += light;
+                    layers = with_light(layers, light, path.bounces + 1u);
+                    state = SCATTER;
+                }
+            } else if has_left {
+                state = LEFT;
+            } else if u.y < chance {
+                path.weight *= of_colors(chances, chance);
+                // Without bounces matter shines: by itself, or in its colours.
+                if frame.path_bounces == 0u && frame.emission_point_count == 0u {
+                    path.radiance = path.weight * color;
+                    layers = with_light(layers, path.radiance, 0u);
+                }
+                at.albedo = color * frame.path_albedo;
+                at.met_by = u.z;
+                state = MET;
+            } else {
+                path.weight *= of_colors(1.0 - chances, 1.0 - chance);
+            }
         }
     }
     var mean = vec4(0.0);
@@ -415,15 +443,15 @@ fn is_coated(at: Collision) -> bool {
     return frame.path_f0 > 0.0 && any(at.normal != vec3(0.0));
 }
 
-// Roulette: what the weight is multiplied by, 0 where the path ends. Paths of very many turns end by chance too.
+// Roulette: what the weight is multiplied by, 0 where the path ends. Paths of very many rounds end by chance too.
 fn kept(path: Path, u: f32) -> f32 {
     let most = max(path.weight.x, max(path.weight.y, path.weight.z));
     var part = 1.0;
     if path.bounces >= FEWEST_BOUNCES && most < LEAST {
         part = most / LEAST;
     }
-    if path.draw > frame.path_turns {
-        part *= 0.5;
+    if path.rounds > frame.path_rounds {
+        part *= select(0.5, 0.875, frame.path_rounds >= MANY_ROUNDS);
     }
     if part == 1.0 {
         return 1.0;

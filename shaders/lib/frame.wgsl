@@ -266,8 +266,8 @@ struct Frame {
     path_lens_right: vec3<f32>,
     path_focus: f32,
     path_lens_up: vec3<f32>,
-    // Paths of more turns end by chance.
-    path_turns: u32,
+    // Paths of more rounds end by chance.
+    path_rounds: u32,
     // Bin (value - first) * scale; row r holds at i the largest of the bins i to i + 2^r - 1, times density.
     path_bin_first: f32,
     path_bin_scale: f32,

@@ -38,7 +38,9 @@ fn has_sky_picture() -> bool {
 fn sky_texel(x: i32, y: i32) -> u32 {
     let size = vec2<i32>(frame.path_sky_size);
     let row = clamp(y, 0, size.y - 1);
-    return u32(row * size.x + (x + size.x) % size.x);
+    // At most one texel beyond. No remainder: drivers on CPUs divide whole numbers one by one.
+    let column = x + select(0, size.x, x < 0) - select(0, size.x, x >= size.x);
+    return u32(row * size.x + column);
 }
 
 fn sky_radiance(texel: u32) -> vec3<f32> {

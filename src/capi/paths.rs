@@ -19,7 +19,7 @@ pub struct sv_path_tracing {
     pub next: *const c_void,
     /// Paths a pixel, at most: frames after it show the same. 0 is 64.
     pub samples: u32,
-    /// So many more in each frame, at most 8, of a driver that counts the turns of loops 4. 0 is 1.
+    /// So many more in each frame, at most 8, of a driver that counts the turns of loops 4 (through functions of gradients 2). 0 is 1.
     pub samples_per_frame: u32,
     /// Other numbers, other noise.
     pub seed: u32,

@@ -29,8 +29,8 @@ pub(super) struct Traced {
 impl Renderer {
     /// Of how many paths a pixel the picture of the last frame is the mean ([`Technique::Pathtrace`](crate::technique::Technique)).
     /// Each frame adds [`samples_per_frame`](crate::technique::pathtrace::PathTracing::samples_per_frame), of a driver that counts
-    /// the turns of loops 4 at most, until there are [`samples`](crate::technique::pathtrace::PathTracing::samples): those after
-    /// it trace none and show the same. Another camera, function, volume, size or settings, an update of the volume, and
+    /// the turns of loops 4 at most (through functions of gradients 2), until there are
+    /// [`samples`](crate::technique::pathtrace::PathTracing::samples): those after it trace none and show the same. Another camera, function, volume, size or settings, an update of the volume, and
     /// a frame in parts that was given up begin anew, with the same random numbers. What the host has drawn is not
     /// compared: see [`Renderer::restart_paths`].
     pub fn paths_traced(&self) -> u32 {
@@ -52,7 +52,8 @@ impl Renderer {
         let (camera, updates) = (*shot.camera, self.volume.updates.done());
         let goes_on = |traced: &Traced| traced.camera == camera && traced.updates == updates;
         let before = self.traced.filter(goes_on).map_or(0, |t| t.paths);
-        let most = paths_at_once(self.gpu.limits().max_loop_turns);
+        let function = self.function.paths.as_ref().map(|of| &of.function);
+        let most = paths_at_once(function, self.gpu.limits().max_loop_turns);
         let left = settings.path.samples.saturating_sub(before);
         Some(Traced {
             camera,

@@ -22,14 +22,14 @@ mod transfers;
 use ash::vk;
 use std::collections::HashMap;
 use std::ffi::{CStr, c_char};
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 pub use answers::ANSWERS;
 pub use states::State;
 pub use table::{CLAMPED_FAULTS, FAULTS};
 pub use table_geometry::{CONE_FAULTS, END_FAULTS};
 pub use table_probes::PROBE_FAULTS;
-pub use table_scatter::SCATTER_FAULTS;
+pub use table_scatter::{GRAZING_FAULT, SCATTER_FAULTS};
 pub use table_splat::SPLAT_FAULTS;
 pub use table_voxels::VOXEL_FAULTS;
 pub use table_warp::WARP_FAULTS;
@@ -67,6 +67,14 @@ pub enum Fault {
 }
 
 static FAULT: Mutex<Option<Fault>> = Mutex::new(None);
+/// One fault at a time is told in a process: held by whoever tells.
+static ONE: Mutex<()> = Mutex::new(());
+
+/// To be held while faults are told.
+pub fn alone() -> MutexGuard<'static, ()> {
+    ONE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 /// How often the fault was told.
 static TOLD: Mutex<u32> = Mutex::new(0);
 

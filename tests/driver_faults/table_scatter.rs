@@ -18,6 +18,13 @@ const OPEN: &str = "reference.raycast.ray.composite.scattered_open.linear_fetch.
 const MARCH: &str = "reference.raycast.ray.composite.scattered_march.linear_fetch.perspective";
 const POINT: &str = "reference.raycast.ray.composite.scattered_point.linear_fetch.perspective";
 
+/// A surface that a way enters and leaves in one cell is not met (`tests/exact/pathtrace/isosurfaces.rs`).
+pub const GRAZING_FAULT: Fault = Shader(
+    "lib/crossing_levels.wgsl",
+    "clamp(extremes(cubic), vec2(0.0), vec2(length))",
+    "vec2(0.0)",
+);
+
 /// What is wrong, how, and the case that must see it.
 pub const SCATTER_FAULTS: &[(&str, Fault, &str)] = &[
     (
@@ -149,6 +156,15 @@ pub const SCATTER_FAULTS: &[(&str, Fault, &str)] = &[
             "lib/random.wgsl",
             "* (1.0 / 16777216.0)",
             "* (1.0 / 16700000.0)",
+        ),
+        ISOTROPIC,
+    ),
+    (
+        "random numbers are rounded up, and reach 1",
+        Shader(
+            "lib/random.wgsl",
+            "return vec4<f32>(pcg4d(key) >> vec4(8u)) * (1.0 / 16777216.0);",
+            "return ceil(vec4<f32>(pcg4d(key) >> vec4(8u)) * (1.0 / 65536.0)) * (1.0 / 256.0);",
         ),
         ISOTROPIC,
     ),

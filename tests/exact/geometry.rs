@@ -1,6 +1,6 @@
 //! Opaque geometry in a picture: rays end at it, and it is seen through what lies before it.
 
-use crate::driver_faults::{END_FAULTS, faulty, tell, told};
+use crate::driver_faults::{END_FAULTS, alone, faulty, tell, told};
 use crate::shared::{compare, device, ramps, volume_of, waves};
 use glam::{DAffine3, DVec3, dvec3};
 use std::sync::Arc;
@@ -111,9 +111,9 @@ fn fog_before_geometry_is_as_thick_as_it_is_deep() {
     assert_eq!(fog_before_geometry(device, &[], 60), Ok(()));
 }
 
-/// One fault at a time: no other test of this program draws through `faulty`.
 #[test]
 fn fog_sees_each_fault_of_the_ends_of_rays() {
+    let _alone = alone();
     let options = Options {
         pipeline_cache: PipelineCache::Off,
         validation: Validation::Off,

@@ -5,7 +5,7 @@ use super::paths::passes_of_paths;
 use crate::offscreen::time_slices::Spent;
 use crate::scene::Scene;
 use crate::technique::cost::{fetches_of_picture, ms_of_fetches};
-use crate::technique::pathtrace::PathTracing;
+use crate::technique::pathtrace::{PathTracing, paths_at_once};
 use crate::technique::{Jitter, Recording, Settings, Skip, View};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -123,7 +123,10 @@ impl<'v> Renderer<'v> {
 pub fn passes_of(scene: &Scene, has_layers: bool, max_loop_turns: u32) -> usize {
     let settings = scene.settings;
     let rays = match settings.technique.traces_paths() {
-        true => passes_of_paths(settings.path.samples, max_loop_turns),
+        true => {
+            let at_once = paths_at_once(scene.transfer, max_loop_turns);
+            passes_of_paths(settings.path.samples, at_once)
+        }
         false => settings.rays_per_side.pow(2),
     };
     let rays = rays as usize;

@@ -38,10 +38,10 @@ fn block_behind(done: u32, at_once: u32) -> u32 {
     }
 }
 
-/// How many passes so many paths take.
-pub(super) fn passes_of_paths(paths: u32, max_loop_turns: u32) -> u32 {
+/// How many passes so many paths take, of which so many come at once.
+pub(super) fn passes_of_paths(paths: u32, at_once: u32) -> u32 {
     let early = paths.min(EARLY);
-    early.div_ceil(EARLY_AT_ONCE) + (paths - early).div_ceil(paths_at_once(max_loop_turns))
+    early.div_ceil(EARLY_AT_ONCE) + (paths - early).div_ceil(at_once)
 }
 
 /// What the last picture of paths took.
@@ -145,12 +145,12 @@ impl<'v> Renderer<'v> {
     ) -> Result<(Vec<[f32; 4]>, Vec<Layer>), Error> {
         let all = &scene.settings.path;
         let turns = self.device.gpu().limits().max_loop_turns;
-        let at_once = paths_at_once(turns);
+        let at_once = paths_at_once(scene.transfer, turns);
         let begun = Instant::now();
         let mut sums = std::mem::take(&mut self.path_ends.begun);
         sums.want(wanted, all.denoise || self.path_ends.keeping.is_some())?;
         let begun_paths = sums.paths();
-        self.passes_done[0] = passes_of_paths(begun_paths, turns) as usize;
+        self.passes_done[0] = passes_of_paths(begun_paths, at_once) as usize;
         let traced = |sums: &PathSums| Traced {
             paths: sums.paths(),
             begun: begun_paths,

@@ -37,7 +37,7 @@ use super::{Error, Light, SampleInputs, View};
 use crate::color::decode_srgb;
 use crate::gpu;
 use crate::resident::TextureLayout;
-use crate::shaders::{Frame, FrameFields, MAJORANT_BINS, MAJORANT_ROWS, MAX_LIGHTS};
+use crate::shaders::{Frame, FrameFields, MAJORANT_BINS, MAJORANT_ROWS, MAX_LIGHTS, TURNS_OF_WAY};
 pub use crate::transfer::Phase;
 use crate::transfer::{Absorption, GradientTransfer, TransferFunction};
 use glam::DVec3;
@@ -178,25 +178,39 @@ fn gather(desc: &GatherDesc) -> Result<Box<dyn Gather>, gpu::Error> {
 
 /// How many paths a pixel has in one pass at most.
 pub(crate) const PATHS_OF_PASS: u32 = 8;
-/// The same where a driver ends loops after so many turns.
+/// The same where a driver ends loops after so many turns, and for functions of gradients, whose taps are turns of loops.
 const PATHS_OF_LOOP: u32 = 4;
+const PATHS_OF_TAPS: u32 = 2;
 
-/// As many as one pass has at most.
-pub(crate) fn paths_at_once(max_loop_turns: u32) -> u32 {
+/// As many as one pass has at most, of matter of such a function.
+pub(crate) fn paths_at_once(function: Option<&TransferFunction>, max_loop_turns: u32) -> u32 {
     match max_loop_turns {
         u32::MAX => PATHS_OF_PASS,
-        _ => PATHS_OF_LOOP,
+        _ => paths_of_loop(function),
     }
 }
 
-/// Turns of loops after which the paths of one pass end by chance: half of what drivers that count them allow, so that all
-/// end long before ([`crate::gpu::Caps::max_loop_turns`]).
-const MOST_TURNS: u32 = 1 << 15;
-/// Of one event: a mask's layers and rows.
+fn paths_of_loop(function: Option<&TransferFunction>) -> u32 {
+    match function.is_some_and(|f| f.gradient_transfer.is_some()) {
+        true => PATHS_OF_TAPS,
+        false => PATHS_OF_LOOP,
+    }
+}
+
+/// Turns of loops after which the paths of one pass end by chance: three quarters of what drivers that count them allow, or of long rounds half, so that all
+/// end long before ([`crate::gpu::Caps::max_loop_turns`]). Such drivers go once through each loop that stands there, whether it is
+/// asked for or not, and once more through each than its turns.
+const MOST_TURNS: [u32; 2] = [3 << 14, 1 << 15];
+/// More turns make a round long.
+const LONG_ROUND: u32 = 96;
+/// Of one turn of a way: itself, and a medium's two searches.
+const TURNS_OF_EVENT: u32 = 1 + 2;
+/// Of a round: itself, the end of its turns, a ray's place in its pixel, a function that returns early, and a cube root.
+const TURNS_OF_ROUND: u32 = 4 + 5;
+/// Of an event: a mask's layers and rows.
 const TURNS_OF_MASK: u32 = 10;
-/// Of one collision: the taps of a gradient, and a cube root.
+/// Of one collision: the taps of a gradient.
 const TURNS_OF_TAPS: u32 = 7;
-const TURNS_OF_ROOT: u32 = 5;
 /// Of an event where second derivatives are asked.
 const TURNS_OF_SECOND: u32 = 28;
 /// Of an event, and of a collision, with several volumes: whether there is data, values, materials; shares and the taps of a label.
@@ -240,6 +254,7 @@ pub(crate) struct MediumFields {
     majorants: Majorants,
     /// Turns of loops that an event takes, and a collision.
     turns: [u32; 2],
+    paths_of_loop: u32,
     surface: f32,
 }
 
@@ -301,12 +316,12 @@ impl PathTracing {
             (self.surface > 0.0, TURNS_OF_TAPS),
             (self.surface > 0.0 && are_several, TURNS_OF_CHANNEL_MET),
             (has_holes && self.surface > 0.0, 6 * TURNS_OF_MASK),
-            (self.phase == Phase::Rayleigh, TURNS_OF_ROOT),
         ]);
         let range = high - low;
         MediumFields {
             majorants,
             turns: [event, collision],
+            paths_of_loop: paths_of_loop(Some(function)),
             surface: match range > 0.0 {
                 true => (self.surface * smallest_spacing / range) as f32,
                 false => 0.0,
@@ -324,11 +339,12 @@ impl MediumFields {
         frame.path_majorants = majorants.rows;
         // The last row has one entry: of all bins.
         frame.path_majorant = majorants.rows[(MAJORANT_BINS * (MAJORANT_ROWS - 1) / 4) as usize][0];
-        // Clip planes are gone over at each change of direction; two events at least are between two of these, and between
-        // two collisions.
+        // Clip planes are gone over where a way begins: from the eye, to a light, from a collision.
         let [event, collision] = self.turns;
-        let all = 1 + event + (2 * frame.clip_plane_count + collision).div_ceil(2);
-        frame.path_turns = MOST_TURNS / PATHS_OF_LOOP / all;
+        let ways = 3 * (frame.clip_plane_count + 1);
+        let round = TURNS_OF_WAY * (TURNS_OF_EVENT + event) + TURNS_OF_ROUND + ways + collision;
+        let most = MOST_TURNS[usize::from(round > LONG_ROUND)];
+        frame.path_rounds = most / self.paths_of_loop / round;
         frame.path_surface = self.surface;
     }
 }

@@ -10,7 +10,7 @@ use super::surface::{reflected, reflection, reflection_density};
 use super::walk::{Step, Walk};
 use crate::ray::{Ray, pixel_ray};
 use crate::real::{Real, add, dot, scale};
-use crate::shaders::Frame;
+use crate::shaders::{Frame, MANY_ROUNDS, TURNS_OF_WAY};
 use crate::technique::reference::{Gathered, Samples};
 
 /// Numbers of a draw: of the way, of a collision, of the direction behind it and of that to a sky.
@@ -49,6 +49,8 @@ struct Path<R> {
     radiance: [R; 3],
     bounces: u32,
     draw: u32,
+    /// Rounds of the shader's loop, so many turns of a way each.
+    rounds: u32,
     has_met: bool,
     /// Of its direction, per steradian.
     density: R,
@@ -76,6 +78,7 @@ impl<R: Real> Path<R> {
             radiance: [zero; 3],
             bounces: 0,
             draw: 1,
+            rounds: 0,
             has_met: false,
             density: zero,
             part: zero,
@@ -193,7 +196,8 @@ impl<R: Real> Path<R> {
         walk: &mut Walk<R>,
         key: &mut [u32; 4],
     ) -> Option<([R; 3], [R; 3])> {
-        loop {
+        for turn in 0.. {
+            self.count_round(turn);
             let [u, v, w, _] = self.draw(key);
             self.part = w;
             let Some((found, place)) = Matter::behind(of, walk, u)? else {
@@ -222,6 +226,7 @@ impl<R: Real> Path<R> {
                 return Some((color, place));
             }
         }
+        None
     }
 
     /// That a tentative collision is a real one.
@@ -238,7 +243,8 @@ impl<R: Real> Path<R> {
     fn through(&mut self, of: &impl Samples<R>, mut walk: Walk<R>, key: &mut [u32; 4]) -> [R; 3] {
         let (zero, one, least) = (R::from_f64(0.0), R::from_f64(1.0), R::from_f64(LEAST));
         let mut through = [one; 3];
-        loop {
+        for turn in 0.. {
+            self.count_round(turn);
             let [u, v, ..] = self.draw(key);
             let Some(found) = Matter::behind(of, &mut walk, u) else {
                 return through;
@@ -254,8 +260,16 @@ impl<R: Real> Path<R> {
                 through = scale(through, part);
             }
             if through.iter().all(|&t| t <= zero) {
-                return through;
+                break;
             }
+        }
+        through
+    }
+
+    /// Counts the rounds that a walk begins.
+    fn count_round(&mut self, turn: u32) {
+        if turn.is_multiple_of(TURNS_OF_WAY) {
+            self.rounds += 1;
         }
     }
 
@@ -274,8 +288,9 @@ impl<R: Real> Path<R> {
         if self.bounces >= FEWEST_BOUNCES && most < least {
             part = most / least;
         }
-        if self.draw > frame.path_turns {
-            part = part * R::from_f64(0.5);
+        if self.rounds > frame.path_rounds {
+            let is_slow = frame.path_rounds >= MANY_ROUNDS;
+            part = part * R::from_f64(if is_slow { 0.875 } else { 0.5 });
         }
         match u < part {
             true => one / part,

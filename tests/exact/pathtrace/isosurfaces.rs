@@ -2,13 +2,16 @@
 
 use super::{
     around_blobs, assert_near, assert_same_paths, at, blobs, drawn, eye, layer, light, lit, matter,
-    mean, mean_of, of_codes, scene, settings,
+    mean, mean_of, numbers, of_codes, scene, settings,
 };
-use crate::shared::volume_of;
+use crate::driver_faults::{GRAZING_FAULT, alone, faulty, tell, told};
+use crate::shared::{device, volume_of};
 use glam::{DAffine3, DQuat, DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
 use stratavox::color::{decode_srgb, encode_srgb};
-use stratavox::offscreen;
+use stratavox::gpu::{DeviceChoice, Headless, Options, PipelineCache, Validation};
+use stratavox::offscreen::{self, Renderer};
+use stratavox::picture::LayerKind;
 use stratavox::technique::pathtrace::PathTracing;
 use stratavox::technique::{Filter, Level, PerMode, Settings};
 
@@ -84,6 +87,53 @@ fn a_plane_is_as_bright_as_the_cosine_to_the_light() {
             }
         }
     }
+}
+
+/// Along the diagonal of a cell whose corners have 0, 1, 0 and 1 the value is 2 s (1 - s): a level of .4 is entered and left
+/// in that cell, at s = (1 -+ sqrt(.2)) / 2. Ends of the cell alone do not tell, which is injected as a fault.
+#[test]
+fn a_surface_that_a_way_enters_and_leaves_in_one_cell_is_met() {
+    let volume = volume_of([2; 3], DAffine3::IDENTITY, |p| {
+        f64::from((p.x < 1.0) != (p.y < 1.0))
+    });
+    let vacuum = matter([1.0; 3], &[(0.0, 0.0)]);
+    let camera = Camera {
+        eye: dvec3(-2.0, -2.0, 1.0),
+        target: DVec3::ONE,
+        up: DVec3::Z,
+        projection: Projection::Orthographic { view_height: 1e-4 },
+        zoom: 1.0,
+    };
+    let path = PathTracing {
+        samples: 2,
+        lights: vec![light(dvec3(-1.0, -1.0, 0.5))],
+        ..PathTracing::default()
+    };
+    let settings = with_levels(path, &[(0.4, [1.0; 3], 1.0)]);
+    let scene = scene(&volume, &vacuum, &camera, &settings, [8; 2]);
+    let depths = |device| {
+        let mut renderer = Renderer::new(device, &volume).expect("a renderer");
+        let found = renderer.render(&scene, &[LayerKind::Depth]).expect("drawn");
+        numbers(&found.picture, LayerKind::Depth).to_vec()
+    };
+    let near = 2_f64.sqrt() * (2.5 + 0.5 * (1.0 - 0.2_f64.sqrt()));
+    for found in depths(device()) {
+        let off = (f64::from(found) - near).abs();
+        assert!(off < 1e-4, "{found}, wanted {near}");
+    }
+    let options = Options {
+        pipeline_cache: PipelineCache::Off,
+        validation: Validation::Off,
+        ..Options::default()
+    };
+    let _alone = alone();
+    // SAFETY: its functions are Vulkan's, but for shaders that are others.
+    let with_fault = unsafe { Headless::through(faulty, &DeviceChoice::Default, &options) };
+    tell(Some(GRAZING_FAULT));
+    let missed = depths(with_fault.expect("a device"));
+    assert!(told() > 0, "no shader has it");
+    tell(None);
+    assert!(missed.iter().all(|depth| depth.is_nan()), "{missed:?}");
 }
 
 /// White surfaces in a white sky, with white matter around, cannot be told from it: each path brings 1, to the bit.
