@@ -52,7 +52,11 @@ fn open_checked(
     }
     let mut notes = Vec::new();
     let dims = dims(arrays.as_ref(), &choice)?;
-    let (place, map, earth_arrays) = placed(arrays.as_ref(), &choice, dims, &mut notes)?;
+    let Placed {
+        place,
+        map,
+        earth_arrays,
+    } = placed(arrays.as_ref(), &choice, dims, &mut notes)?;
     let mut header = Header::new(format, dims, VoxelType::F32, place.world_from_voxel);
     header.is_earth = place.is_earth;
     header.degree_lengths = place.degrees;
@@ -164,12 +168,18 @@ pub(super) fn dims(arrays: &dyn Arrays, choice: &Choice) -> Result<[u32; 3], Pro
 }
 
 /// Where the points lie, the map they are drawn on, and the names of the latitudes and longitudes of all columns.
+struct Placed {
+    place: Place,
+    map: Option<MapProjection>,
+    earth_arrays: Option<[String; 2]>,
+}
+
 fn placed(
     arrays: &dyn Arrays,
     choice: &Choice,
     dims: [u32; 3],
     notes: &mut Vec<String>,
-) -> Result<(Place, Option<MapProjection>, Option<[String; 2]>), Problem> {
+) -> Result<Placed, Problem> {
     let mut coordinates = [None, None, None];
     for (role, dimension) in choice.roles.iter().zip(&choice.variable.dimensions) {
         if let Role::Space(k) = *role
@@ -218,7 +228,11 @@ fn placed(
         let found = latitude_longitude(arrays, &choice.variable, x, y)?;
         Some(found.map(|variable| variable.name.clone()))
     });
-    Ok((spanned, map, earth_arrays))
+    Ok(Placed {
+        place: spanned,
+        map,
+        earth_arrays,
+    })
 }
 
 /// Longer lists of moments are not read.
