@@ -1,6 +1,6 @@
-"""Draws four scenes with stratavox and with Mitsuba 3 (3.9.1, `pip install mitsuba`), and says whether they are the same.
+"""Draws five scenes with stratavox and with Mitsuba 3 (3.9.1, `pip install mitsuba`), and says whether they are the same.
 
-    python docs/pathtrace/beside_mitsuba.py target/release/stratavox FOLDER_OF_VOLUMES FOLDER_FOR_PICTURES [VARIANT]
+    python docs/pathtrace/beside_mitsuba.py target/release/stratavox FOLDER_OF_VOLUMES FOLDER_FOR_PICTURES [VARIANT [PICTURES]]
 
 Both have the same matter (extinctions at the centres of voxels, linear between them, the outer ones to the faces), the same
 phase function, lights and parallel rays. Of each scene 16 pictures of other random numbers, so that each pixel has a mean
@@ -12,7 +12,8 @@ and the variance of that mean. Prints rows of a table:
     mirrored      the same beside our picture turned left to right: it has to be far off
     paths/s       of both, by the clock, in thousands; ours with all that a run of the program takes
 
-VARIANT is Mitsuba's, scalar_rgb by default.
+VARIANT is Mitsuba's, scalar_rgb by default; PICTURES are 16. The means are drawn into FOLDER_FOR_PICTURES/beside_mitsuba.png: a
+row a scene, ours, Mitsuba's, and their difference from -4 (black) to 4 (white) standard errors.
 """
 
 import json
@@ -29,7 +30,10 @@ PROGRAM, VOLUMES, OUT = sys.argv[1], Path(sys.argv[2]), Path(sys.argv[3])
 VARIANT = sys.argv[4] if len(sys.argv) > 4 else "scalar_rgb"
 mi.set_variant(VARIANT)
 mi.set_log_level(mi.LogLevel.Error)
-SIZE, PATHS, PICTURES = 32, 256, 16
+SIZE, PATHS = 32, 256
+PICTURES = int(sys.argv[5]) if len(sys.argv) > 5 else 16
+# Pixels of the sheet for each of a picture.
+SCALE = 4
 AIM = dict(origin=[0.3, -4, 0.5], target=[0, 0, 0], up=[0, 0, 1])
 
 
@@ -147,7 +151,18 @@ def theirs(scene, seed, size, paths):
     return picture, size * size * paths / (time.time() - begun)
 
 
+def row_of(pictures, variance):
+    """Three pictures side by side, in sRGB codes."""
+    a, b = pictures
+    grey = np.clip(0.5 + (a - b) / np.sqrt(np.maximum(variance, 1e-12)) / 8, 0, 1)
+    # Brightest where one pixel in a hundred is brighter: suns are.
+    white = max(np.percentile(b, 99), 1e-6)
+    codes = [np.clip(picture / white, 0, 1) ** (1 / 2.2) for picture in pictures] + [grey]
+    return np.concatenate([np.pad(c, ((1, 1), (1, 1), (0, 0)), constant_values=1) for c in codes], axis=1)
+
+
 def main():
+    rows = []
     print("| scene | means | apart | chi^2 | mirrored | paths/s |")
     print("|---|---|---|---|---|---|")
     for name, scene in scenes():
@@ -165,8 +180,9 @@ def main():
         apart = (means[0].mean() - means[1].mean()) / error
         row = f"{means[0].mean():.5f}, {means[1].mean():.5f} | {apart:+.2f} | {chi(mean_a):.2f} | {chi(mean_a[:, ::-1]):.0f}"
         print(f"| {name} | {row} | {rate_a / 1e3:.0f}, {rate_b / 1e3:.1f} |", flush=True)
-        for side, picture in (("ours", mean_a), ("mitsuba", mean_b)):
-            mi.util.write_bitmap(str(OUT / f"{name.replace(' ', '-').replace(',', '')}-{side}.png"), picture)
+        rows.append(row_of((mean_a, mean_b), variance))
+    sheet = np.concatenate(rows).repeat(SCALE, 0).repeat(SCALE, 1)
+    mi.Bitmap((255 * sheet + 0.5).astype(np.uint8)).write(str(OUT / "beside_mitsuba.png"))
 
 
 main()
