@@ -82,7 +82,9 @@ fi
 endef
 
 # The interface for C is off in what people install, who do not need it; its tests run like all others.
-# The viewer is built with the library's features of all tests: with its own the library would be built once more.
+# The viewer is built with the library's features of all tests, and beside a test of the library that no device is for: else the
+# library would be built once more, which takes minutes.
+WITH_LIBRARY := --test bombs
 TEST := $(CARGO) test --locked --workspace --features stratavox/capi
 
 # What draws. `host` makes no device: its tests run side by side, and the validation layer has nothing to hear there.
@@ -157,15 +159,15 @@ command-line-drawn:
 
 without-device:
 	$(TEST) --doc
-	$(TEST) --no-fail-fast --test host --test bombs $(SHOWN)
+	$(TEST) --no-fail-fast --test host $(SHOWN)
 
 # A package of its own, with a window and a panel that nothing else needs.
 viewer: driver layers display
-	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --no-fail-fast --bin stratavox-viewer --test lost --test window $(SHOWN)
+	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --no-fail-fast --bin stratavox-viewer --test lost --test window $(WITH_LIBRARY) $(SHOWN)
 
 # Each of its barriers taken away.
 viewer-barriers: driver layers display
-	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --test barriers $(SHOWN)
+	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --test barriers $(WITH_LIBRARY) $(SHOWN)
 
 plain: driver layers
 	$(ON_DEVICE) --no-fail-fast --lib --examples $(addprefix --test ,$(WITH_DEVICE)) $(SHOWN) --skip $(BARRIERS)
