@@ -63,7 +63,7 @@ const FEWEST_BOUNCES: u32 = 4u;
 const LEAST: f32 = 0.1;
 
 // Paths that end by chance behind as many rounds as these do so slowly: drivers leave room for it.
-const MANY_ROUNDS: u32 = 128u;
+const MANY_ROUNDS: u32 = 224u;
 
 // Ways from a surface begin so far before it, in smallest spacings.
 const LEAVES_BY: f32 = 1e-3;

@@ -197,12 +197,11 @@ fn paths_of_loop(function: Option<&TransferFunction>) -> u32 {
     }
 }
 
-/// Turns of loops after which the paths of one pass end by chance: three quarters of what drivers that count them allow, or of long rounds half, so that all
-/// end long before ([`crate::gpu::Caps::max_loop_turns`]). Such drivers go once through each loop that stands there, whether it is
-/// asked for or not, and once more through each than its turns.
-const MOST_TURNS: [u32; 2] = [3 << 14, 1 << 15];
-/// More turns make a round long.
-const LONG_ROUND: u32 = 96;
+/// Turns of loops after which the paths of one pass end by chance, of the 2^16 that drivers that count them allow
+/// ([`crate::gpu::Caps::max_loop_turns`]), for rounds of at most so many turns. What is left is enough for four paths: behind short rounds,
+/// which there are many of, they go on by 7/8 at each collision, else by 1/2. Such drivers go once through each loop that stands there,
+/// whether it is asked for or not, and once more through each than its turns.
+const MOST_TURNS: [(u32, u32); 3] = [(64, 3 << 14), (128, 29 << 11), (u32::MAX, 1 << 15)];
 /// Of one turn of a way: itself, and a medium's two searches.
 const TURNS_OF_EVENT: u32 = 1 + 2;
 /// Of a round: itself, the end of its turns, a ray's place in its pixel, a function that returns early, and a cube root.
@@ -343,7 +342,8 @@ impl MediumFields {
         let [event, collision] = self.turns;
         let ways = 3 * (frame.clip_plane_count + 1);
         let round = TURNS_OF_WAY * (TURNS_OF_EVENT + event) + TURNS_OF_ROUND + ways + collision;
-        let most = MOST_TURNS[usize::from(round > LONG_ROUND)];
+        let most = MOST_TURNS.iter().find(|(longest, _)| round <= *longest);
+        let most = most.map_or(0, |(_, turns)| *turns);
         frame.path_rounds = most / self.paths_of_loop / round;
         frame.path_surface = self.surface;
     }
