@@ -19,6 +19,15 @@ const COARSEST: f64 = 0.1;
 /// Halvings of the range in which the number is looked for.
 const HALVINGS: u32 = 24;
 
+/// What [`explained`] makes of the errors of a scene on the device of a renderer.
+pub fn told<'a>(
+    on: &offscreen::Renderer,
+    scene: &'a Scene<'a>,
+) -> impl Fn(offscreen::Error) -> Error + Copy + use<'a> {
+    let most_bytes = on.device().gpu().limits().max_allocation_bytes;
+    move |error| explained(error, scene, most_bytes)
+}
+
 /// The error, with a hint that names the number where it is about the intermediate image; `most_bytes` is what the device has room
 /// for in one image.
 pub fn explained(error: offscreen::Error, scene: &Scene, most_bytes: u64) -> Error {

@@ -228,11 +228,7 @@ impl Render {
         for note in idle.chain(view.notes.iter().cloned()) {
             progress.note(&note);
         }
-        // A file says how many rays there are.
-        let said = match self.scene_file {
-            Some(_) => &scene,
-            None => &self.scene,
-        };
+        let said = self.scene_file.is_none().then_some(&self.scene);
         let of_lines = flow::notes(said, &scene, shown.lines(), &view.camera, extent_pixels);
         of_lines.iter().for_each(|note| progress.note(note));
         let View {

@@ -248,14 +248,13 @@ impl<'a> Renderer<'a> {
             None => offscreen::Renderer::with_kept(on, volumes)?,
         };
         let prepare_ms = device.found_ms + ms_since(start);
-        let most_bytes = renderer.device().gpu().limits().max_allocation_bytes;
         let start = Instant::now();
         let scene = job.scene(camera);
         if let Some(lines) = job.lines {
             let geometry = lines.geometry(camera, job.extent_pixels);
             renderer.set_geometry(Some(Arc::new(geometry)));
         }
-        let told = |error| intermediate::explained(error, &scene, most_bytes);
+        let told = intermediate::told(&renderer, &scene);
         renderer.upload(&scene).map_err(told)?;
         let upload_ms = ms_since(start);
         let start = Instant::now();
@@ -407,8 +406,7 @@ impl<'a> Renderer<'a> {
         self.put_lines(camera, extent_pixels);
         match &mut self.on_device {
             Some(renderer) => {
-                let most_bytes = renderer.device().gpu().limits().max_allocation_bytes;
-                let told = |error| intermediate::explained(error, &scene, most_bytes);
+                let told = intermediate::told(renderer, &scene);
                 Ok(renderer.render(&scene, &[]).map_err(told)?.picture)
             }
             None => self.reference(&scene),
@@ -473,8 +471,7 @@ impl<'a> Renderer<'a> {
         let scene = self.job.scene(camera);
         self.put_lines(camera, self.job.extent_pixels);
         if let Some(renderer) = &mut self.on_device {
-            let most_bytes = renderer.device().gpu().limits().max_allocation_bytes;
-            let told = |error| intermediate::explained(error, &scene, most_bytes);
+            let told = intermediate::told(renderer, &scene);
             let rendered = renderer.render(&scene, layers).map_err(told)?;
             return Ok(Frame {
                 picture: rendered.picture,

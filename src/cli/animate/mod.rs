@@ -303,11 +303,7 @@ impl Animate {
         for shot in &mut shots {
             shot.settings.skip &= !self.no_skip;
         }
-        // A file says how many rays there are.
-        let said = match self.scene_file {
-            Some(_) => scene,
-            None => &self.scene,
-        };
+        let said = self.scene_file.is_none().then_some(&self.scene);
         let lines = match &content {
             Content::Still(shown) | Content::Together(shown, _) => shown.lines(),
             Content::Times(..) => None,

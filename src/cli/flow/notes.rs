@@ -11,15 +11,17 @@ use crate::figure::short;
 const FOUR_RAYS: &str =
     "four rays a pixel, for the edges of what lies beside the volume; --aa 1 sends one";
 
-/// What is to be said of a picture, or of the first frame of a film, whose scene was filled in from what a person `said`.
+/// What is to be said of a picture, or of the first frame of a film, whose scene was filled in from what a person `said`; `None` where a
+/// file says all, how many rays there are too.
 pub fn notes(
-    said: &SceneFlags,
+    said: Option<&SceneFlags>,
     scene: &SceneFlags,
     lines: Option<&DrawnLines>,
     camera: &Camera,
     extent_pixels: [u32; 2],
 ) -> Vec<String> {
-    let is_chosen = said.sampling.aa.is_none() && scene.sampling.aa == Some(4);
+    let is_left = said.is_some_and(|said| said.sampling.aa.is_none());
+    let is_chosen = is_left && scene.sampling.aa == Some(4);
     let four = (is_chosen && scene.has_lines()).then(|| FOUR_RAYS.to_owned());
     let thin = lines.and_then(|lines| lines.thin(camera, extent_pixels));
     four.into_iter().chain(thin).collect()

@@ -198,10 +198,13 @@ fn paths_of_loop(function: Option<&TransferFunction>) -> u32 {
 }
 
 /// Turns of loops after which the paths of one pass end by chance, of the 2^16 that drivers that count them allow
-/// ([`crate::gpu::Caps::max_loop_turns`]), for rounds of at most so many turns. What is left is enough for four paths: behind short rounds,
-/// which there are many of, they go on by 7/8 at each collision, else by 1/2. Such drivers go once through each loop that stands there,
+/// ([`crate::gpu::Caps::max_loop_turns`]), for rounds of at most so many turns. Such drivers go once through each loop that stands there,
 /// whether it is asked for or not, and once more through each than its turns.
-const MOST_TURNS: [(u32, u32); 3] = [(64, 3 << 14), (128, 29 << 11), (u32::MAX, 1 << 15)];
+///
+/// The rest is for paths that are to end: where n rounds are left and a collision takes two of them, four paths want more with the chance
+/// that of n / 2 throws fewer than 4 end one. By 1/2, of 64 rounds: 1.3e-6. By 1/8, where [`MANY_ROUNDS`](crate::shaders::MANY_ROUNDS)
+/// come before, so that a round has at most 54 turns and 303 are left: 3e-6.
+const MOST_TURNS: [(u32, u32); 3] = [(64, 3 << 14), (128, 7 << 13), (u32::MAX, 1 << 15)];
 /// Of one turn of a way: itself, and a medium's two searches.
 const TURNS_OF_EVENT: u32 = 1 + 2;
 /// Of a round: itself, the end of its turns, a ray's place in its pixel, a function that returns early, and a cube root.
