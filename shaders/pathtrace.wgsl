@@ -285,10 +285,7 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
 // Numbers of a draw, of which those of the first bounce end with a pair of choices that fill the square evenly.
 fn numbers_of_bounce(key: vec4<u32>, pair: u32, bounces: u32) -> vec4<f32> {
     let numbers = random_numbers(key);
-    if bounces > 0u {
-        return numbers;
-    }
-    return vec4(numbers.xy, sobol_numbers(key, pair));
+    return vec4(numbers.xy, select(numbers.zw, sobol_numbers(key, pair), bounces == 0u));
 }
 
 // Rays through a thin lens meet where they meet the plane of focus.

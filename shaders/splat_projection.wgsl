@@ -14,6 +14,15 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
     if any(pixel >= frame.extent_pixels) {
         return;
     }
-    let found = splatted(vec2<f32>(pixel) + 0.5, begin());
+    let found = splatted(vec2<f32>(pixel) + 0.5, gathered_before(pixel));
     textureStore(accumulation, pixel, vec4(found.value, found.weight, found.depth, found.samples));
+}
+
+// What the parts before have left in the image.
+fn gathered_before(pixel: vec2<u32>) -> Accumulator {
+    if frame.is_first_brick != 0u {
+        return begin();
+    }
+    let before = textureLoad(accumulation, pixel);
+    return Accumulator(before.x, before.y, before.z, before.w);
 }

@@ -595,6 +595,9 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     ("macro_cells", &[slot("layout", &["box", "stack"])]),
     ("distance_map", &[]),
+    ("run_words", &[]),
+    ("run_blocks", &[]),
+    ("run_payload", &[]),
     (
         "slice_patches",
         &[slot("planes", &["view", "stack"]), TOPOLOGY],

@@ -221,9 +221,10 @@ struct Frame {
     splat_first: vec3<i32>,
     splat_last: vec3<i32>,
     splat_halo: vec3<f32>,
-    // Scattered points: which of the list of a tile this recording takes; where rays are cast through them, which samples.
-    points_first: u32,
-    points_end: u32,
+    // What of each ray this recording takes: of splats which sheets, or which slices where sheets are these or none; of scattered
+    // points which of the list of a tile, or where rays are cast through them which samples.
+    part_first: u32,
+    part_end: u32,
     // The field of points: from voxel space to cells, how many of these there are along each axis, a cell over the radius, 1 over
     // the integral of the kernel (0: means of values), and whether empty cells are left out.
     field_from_voxel: mat3x4<f32>,

@@ -8,7 +8,8 @@ fn splatted_along(world: Ray, line: SplatLine, range: SplatRange, before: Accumu
     var so_far = before;
     let slices = splat_slices(line, range, line.reach + plane_length(world));
     let reach_voxels = passed_reach(line, plane_length(world));
-    for (var i = 0; i < slices.count && !is_finished(so_far); i++) {
+    let end = min(slices.count, i32(frame.part_end));
+    for (var i = i32(frame.part_first); i < end && !is_finished(so_far); i++) {
         let m = slices.first + i * slices.step;
         let t = crossing(line, m);
         if is_passed_by(line, t, reach_voxels) {

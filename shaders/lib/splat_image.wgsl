@@ -35,14 +35,28 @@ fn four_edges(line: SplatLine, range: SplatRange, heights: SheetHeights, k: i32,
 fn splatted_along(world: Ray, line: SplatLine, range: SplatRange, before: Accumulator) -> Accumulator {
     var so_far = before;
     let heights = SheetHeights(dot(frame.forward, world.origin), dot(frame.forward, world.direction));
-    let slices = splat_slices(line, range, line.reach + plane_length(world));
-    if slices.count <= 0 {
+    let margin = line.reach + plane_length(world);
+    let whole = splat_slices(line, range, margin);
+    if whole.count <= 0 {
         return so_far;
     }
-    let front = max(range.t.x, crossing(line, slices.first) - line.reach);
-    let back = min(range.t.y, crossing(line, slices.first + slices.step * (slices.count - 1)) + line.reach);
-    var first = i32(floor(sheet_at(heights, front)));
-    let last = i32(ceil(sheet_at(heights, back))) - 1;
+    let front = max(range.t.x, crossing(line, whole.first) - line.reach);
+    let back = min(range.t.y, crossing(line, whole.first + whole.step * (whole.count - 1)) + line.reach);
+    let nearest = i32(floor(sheet_at(heights, front)));
+    let farthest = i32(ceil(sheet_at(heights, back))) - 1;
+    var first = nearest + i32(frame.part_first);
+    let last = nearest + min(farthest - nearest, i32(frame.part_end) - 1);
+    if first > last {
+        return so_far;
+    }
+    // Of a part, the slices that reach into its sheets. A splat is counted where its slice begins.
+    let is_front = frame.part_first == 0u;
+    let begin_t = sheet_edge(heights, vec4(f32(first))).x;
+    let end_t = sheet_edge(heights, vec4(f32(last + 1))).x;
+    var of_part = range;
+    of_part.t = vec2(select(begin_t, range.t.x, is_front), select(end_t, range.t.y, last == farthest));
+    let slices = splat_slices(line, of_part, margin);
+    let counted = vec2(select(f32(first), -ENDLESS, is_front), select(f32(last + 1), ENDLESS, last == farthest));
     let reach_voxels = passed_reach(line, plane_length(world));
     // The first is the nearest. Places are named by constants, so that they can be registers.
     var open = array<vec4<f32>, MAX_OPEN_SHEETS>();
@@ -61,6 +75,7 @@ fn splatted_along(world: Ray, line: SplatLine, range: SplatRange, before: Accumu
         if is_passed_by(line, t, reach_voxels) {
             continue;
         }
+        let is_counted = select(0.0, 1.0, counted.x <= reached && reached < counted.y);
         let edges_0 = four_edges(line, range, heights, first + 1, t);
         let edges_1 = four_edges(line, range, heights, first + 5, t);
         let edges_2 = four_edges(line, range, heights, first + 9, t);
@@ -79,7 +94,7 @@ fn splatted_along(world: Ray, line: SplatLine, range: SplatRange, before: Accumu
             if square > frame.splat_reach * frame.splat_reach || !is_kept(voxel) {
                 continue;
             }
-            so_far.samples += 1.0;
+            so_far.samples += is_counted;
             let numbers = splat_weight(line, square) * numbers_of(voxel);
             let densest = line.kappa * dot(line.drift, w);
             // Rounding makes no weight negative: a sheet lies between its voxels.

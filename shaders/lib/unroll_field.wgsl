@@ -20,8 +20,8 @@ fn field_line(segments: RaySegments) -> FieldLine {
 fn gathered(before: Accumulator, segments: RaySegments, start: i32) -> Accumulator {
     let line = field_line(segments);
     var so_far = before;
-    var k = max(start, segments.lattice.first + i32(frame.points_first));
-    let end = min(segments.end, segments.lattice.first + i32(frame.points_end));
+    var k = max(start, segments.lattice.first + i32(frame.part_first));
+    let end = min(segments.end, segments.lattice.first + i32(frame.part_end));
     loop {
         k = beyond_empty_cells(line, segments.line, k);
         if k >= end || is_finished(so_far) {

@@ -36,7 +36,7 @@ fn list_of(pixel: vec2<u32>) -> vec2<u32> {
     let lists = blocks.x * blocks.y + 1u;
     let i = block.x + blocks.x * block.y;
     let list = lists + vec2(block_points.numbers[i], block_points.numbers[i + 1u]);
-    return min(list.x + vec2(frame.points_first, frame.points_end), list.yy);
+    return min(list.x + vec2(frame.part_first, frame.part_end), list.yy);
 }
 
 // The point at that place of the lists.

@@ -269,6 +269,7 @@ impl Renderer {
         let limit = self.gpu.limits().max_loop_turns;
         let finds_depth = self.pass.slice_depth.is_some();
         view.check_turns(variant, 1, functions, limit)?;
+        view.check_splats_in_one(limit)?;
         if finds_depth {
             view.check_depth_turns(variant, functions, limit)?;
         }

@@ -406,13 +406,17 @@ impl<'v> Renderer<'v> {
         let is_half = scene.settings.is_half_angle();
         let at_once = if is_half { 2 } else { BRICKS_AT_ONCE };
         let bricks = parts[0].volume.bricks().len();
-        let of_points = match scene.beside {
+        let of_ray = match scene.beside {
             Beside::Points(_) if scene.settings.field.is_some() => of_field,
             Beside::Points(points) => points.len() / points_at_once(&gpu, scene) as usize + 1,
-            _ => 0,
+            _ => {
+                let grid = scene.volume.grid();
+                let view = scene.view(&grid, [0.0; 2]);
+                view.splat_parts(view.splat_sheets_at_once(gpu.limits().max_loop_turns)?)
+            }
         };
-        let slots = bricks.max(at_once).max(of_points) as u32;
-        let are_several = bricks > 1 || self.streaming.is_some() || of_points > 1;
+        let slots = bricks.max(at_once).max(of_ray) as u32;
+        let are_several = bricks > 1 || self.streaming.is_some() || of_ray > 1;
         let keeps_layers = has_layers || are_several;
         let variant = ShaderVariant {
             writes_layers: keeps_layers,

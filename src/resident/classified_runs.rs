@@ -8,19 +8,15 @@
 //! Lacroute and Levoy, "Fast Volume Rendering Using a Shear-Warp Factorization of the Viewing Transformation", SIGGRAPH
 //! 1994, keep theirs for each of the three axes; with ranks one encoding serves all of them.
 
-use crate::gpu::{
-    Buffer, Error, Headless, Image, ImageDesc, ImageKind, Memory, Region, Use, buffer_to_image,
-    image_barrier,
-};
+mod on_device;
+mod texels;
+
+use crate::gpu::{Error, Headless, Image};
 use crate::volume::{Rescale, RunBits, Volume, Voxels};
 use ash::vk;
 use half::f16;
-use std::sync::Arc;
-
-/// Texels of a row (`shaders/lib/channels_on_runs.wgsl`).
-const WIDTH: u32 = 4096;
-/// Rows that are staged at once.
-const STAGED_ROWS: u32 = 64;
+pub use on_device::RunBuilder;
+use texels::{Texels, bytes_of, read_back};
 
 /// The floats of a payload.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -69,9 +65,22 @@ impl PayloadFloats {
         }
     }
 
-    /// Whether the numbers of a volume can be such floats.
-    fn hold(self, volume: &Volume) -> bool {
-        self == Self::Single || volume.value_range[1] <= f64::from(f16::MAX)
+    /// Bytes of a payload.
+    fn bytes(self) -> u64 {
+        match self {
+            Self::Half => 8,
+            Self::Single => 16,
+        }
+    }
+
+    /// Whether what a voxel is made of can be such floats.
+    fn hold(self, numbers: [f32; 4]) -> bool {
+        self == Self::Single || numbers.into_iter().all(|n| n <= f16::MAX.to_f32())
+    }
+
+    /// Whether the numbers of a volume can be.
+    fn hold_all(self, volume: &Volume) -> bool {
+        self.hold([volume.value_range[1] as f32; 4])
     }
 }
 
@@ -82,7 +91,7 @@ fn numbers_of(volumes: [&Volume; 4], floats: PayloadFloats) -> Option<[&[f32]; 4
         Voxels::F32(numbers)
             if volume.rescale == Rescale::default()
                 && volume.grid() == grid
-                && floats.hold(volume) =>
+                && floats.hold_all(volume) =>
         {
             Some(&numbers[..])
         }
@@ -91,6 +100,16 @@ fn numbers_of(volumes: [&Volume; 4], floats: PayloadFloats) -> Option<[&[f32]; 4
     match plain {
         [Some(red), Some(green), Some(blue), Some(depth)] => Some([red, green, blue, depth]),
         _ => None,
+    }
+}
+
+impl RunsSize {
+    fn new(full: u64, runs: u64, images: [&Image; 2]) -> Self {
+        Self {
+            full,
+            runs,
+            bytes: images.map(bytes_of).into_iter().sum(),
+        }
     }
 }
 
@@ -109,17 +128,25 @@ impl ClassifiedRuns {
             return Ok(None);
         };
         let validity = volumes[3].validity.as_deref();
-        let is_full = |n: usize| numbers[3][n] > 0.0 && validity.is_none_or(|valid| valid[n] != 0);
-        let bits = RunBits::of_rows(volumes[3].dims, is_full);
-        let mut words = bits.words().iter();
+        let bits = RunBits::of_masks(volumes[3].dims, |voxels| {
+            let depths = numbers[3][voxels.clone()].iter().map(|&depth| depth > 0.0);
+            let full = mask_of(depths);
+            validity.map_or(full, |valid| {
+                full & mask_of(valid[voxels].iter().map(|&valid| valid != 0))
+            })
+        });
+        let mut words: &[u8] = bytemuck::cast_slice(bits.words());
         let words = Texels {
             format: vk::Format::R32G32_UINT,
-            count: words.len() as u64,
+            count: bits.words().len() as u64,
             name: "words of runs",
         }
-        .image(device, |texel| {
-            let word = words.next();
-            word.map(|word| texel.copy_from_slice(bytemuck::bytes_of(word)))
+        .image(device, |out| {
+            let (next, rest) = words.split_at(words.len().min(out.len()));
+            let (own, behind) = out.split_at_mut(next.len());
+            own.copy_from_slice(next);
+            behind.fill(0);
+            words = rest;
         })?;
         let mut full = bits.voxels();
         let payload = Texels {
@@ -127,19 +154,32 @@ impl ClassifiedRuns {
             count: bits.full_count(),
             name: "payload of runs",
         }
-        .image(device, |texel| {
-            let voxel = full.next();
-            voxel.map(|n| floats.encode(numbers.map(|of| of[n]), texel))
+        .image(device, |out| {
+            for texel in out.chunks_exact_mut(floats.bytes() as usize) {
+                match full.next() {
+                    Some(n) => floats.encode(numbers.map(|of| of[n]), texel),
+                    None => texel.fill(0),
+                }
+            }
         })?;
+        let size = RunsSize::new(bits.full_count(), bits.run_count(), [&words, &payload]);
         Ok(Some(Self {
-            size: RunsSize {
-                full: bits.full_count(),
-                runs: bits.run_count(),
-                bytes: bytes_of(&words) + bytes_of(&payload),
-            },
             words,
             payload,
+            size,
         }))
+    }
+
+    /// The bytes of the words and of the payload as they lie on the device: whole rows of 4096 texels, where there is more than
+    /// one.
+    ///
+    /// # Errors
+    /// Where the device gives no memory, or is lost.
+    pub fn read(&self, device: &mut Headless) -> Result<[Vec<u8>; 2], Error> {
+        Ok([
+            read_back(device, &self.words)?,
+            read_back(device, &self.payload)?,
+        ])
     }
 
     /// What they take.
@@ -157,75 +197,8 @@ impl ClassifiedRuns {
     }
 }
 
-fn bytes_of(image: &Image) -> u64 {
-    let bytes = Region::whole(image).bytes(image.format());
-    bytes.expect("a format of ours")
-}
-
-/// So many texels in rows.
-#[derive(Clone, Copy)]
-struct Texels {
-    format: vk::Format,
-    count: u64,
-    name: &'static str,
-}
-
-impl Texels {
-    /// Their image, and one texel where there are none. `write` puts the next one into its place; behind the last it gives `None`, and
-    /// the rest of the last row is 0.
-    fn image(
-        self,
-        device: &mut Headless,
-        mut write: impl FnMut(&mut [u8]) -> Option<()>,
-    ) -> Result<Image, Error> {
-        let gpu = Arc::clone(device.gpu());
-        let count = self.count.max(1);
-        let height = count.div_ceil(WIDTH.into());
-        let desc = ImageDesc {
-            kind: ImageKind::D2,
-            extent: [
-                count.min(WIDTH.into()) as u32,
-                height.try_into().unwrap_or(u32::MAX),
-                1,
-            ],
-            format: self.format,
-            usage: vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST,
-            name: self.name,
-        };
-        let image = Image::new(&gpu, &desc)?;
-        let [width, height, _] = desc.extent;
-        let part = |first: u32| Region {
-            origin: [0, first, 0],
-            extent: [width, STAGED_ROWS.min(height - first), 1],
-        };
-        let bytes = |part: Region| part.bytes(self.format).expect("a format of ours");
-        let texel_bytes = bytes(part(0)) / u64::from(part(0).extent[1] * width);
-        let usage = vk::BufferUsageFlags::TRANSFER_SRC;
-        let staging = Buffer::new(&gpu, bytes(part(0)), usage, Memory::Upload, "staged runs")?;
-        for first in (0..height).step_by(STAGED_ROWS as usize) {
-            let part = part(first);
-            staging.write_with(0, bytes(part), |out| {
-                for texel in out.chunks_exact_mut(texel_bytes as usize) {
-                    if write(texel).is_none() {
-                        texel.fill(0);
-                    }
-                }
-            })?;
-            let before = match first {
-                0 => Use::Nothing,
-                _ => Use::Sampled,
-            };
-            device.run(|cmd| {
-                // SAFETY: recorded outside rendering; both live until `run` has waited, and nothing else knows the image yet; the host
-                // has written these rows before.
-                unsafe {
-                    image_barrier(&gpu, cmd, &image, before, Use::TransferWrite);
-                    buffer_to_image(&gpu, cmd, &staging, 0, &image, part)?;
-                    image_barrier(&gpu, cmd, &image, Use::TransferWrite, Use::Sampled);
-                }
-                Ok(())
-            })?;
-        }
-        Ok(image)
-    }
+/// Bit b: of voxel b.
+fn mask_of(full: impl Iterator<Item = bool>) -> u32 {
+    let bits = (0_u32..).zip(full);
+    bits.fold(0, |mask, (bit, full)| mask | u32::from(full) << bit)
 }

@@ -203,6 +203,7 @@ impl View<'_> {
             splat_first: of_splats.splat_first,
             splat_last: of_splats.splat_last,
             splat_halo: of_splats.splat_halo,
+            part_end: of_splats.part_end,
             // What a brick, slices, channels, lights, cells and a host's depth say of themselves, where there are any.
             ..bytemuck::Zeroable::zeroed()
         };

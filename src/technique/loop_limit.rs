@@ -163,12 +163,10 @@ impl View<'_> {
     ) -> Result<(), Error> {
         // Of a slicer every invocation takes one sample, and paths end by themselves.
         let technique = self.settings.technique;
-        // Fields of points are recorded in parts (`View::field_samples_at_once`).
-        if !technique.casts_rays() || technique.traces_paths() || self.settings.field.is_some() {
+        // Fields of points are recorded in parts, and so are splats (`View::splat_sheets_at_once`).
+        let is_in_parts = self.settings.field.is_some() || technique.splats();
+        if !technique.casts_rays() || technique.traces_paths() || is_in_parts {
             return Ok(());
-        }
-        if self.settings.technique.splats() && max_loop_turns != u32::MAX {
-            return self.check_splat_turns(max_loop_turns);
         }
         let wanted = self.longest_sample_count();
         self.check_loops(variant, volumes, functions, max_loop_turns, wanted)

@@ -14,7 +14,73 @@
 
 use crate::color::ColorSpace;
 use crate::transfer::{Absorption, Points, TransferFunction, classify_by_points};
-use crate::volume::{Problem, Rescale, Volume, Voxels};
+use crate::volume::{Codes, Problem, Rescale, Volume, Voxels};
+
+/// What stored numbers are made of.
+struct Materials {
+    points: Points,
+    reference_length: f64,
+    rescale: Rescale,
+}
+
+impl Materials {
+    fn new(volume: &Volume, function: &TransferFunction, length: f64, space: ColorSpace) -> Self {
+        let absorption = Absorption::Extinction {
+            reference_length: length,
+        };
+        Self {
+            points: Points::new(function, absorption, space),
+            reference_length: length,
+            rescale: volume.rescale,
+        }
+    }
+
+    /// Red, green and blue times depth, and depth.
+    fn of(&self, stored: f32) -> [f32; 4] {
+        let value = f64::from(stored) * self.rescale.slope + self.rescale.intercept;
+        let [r, g, b, extinction]: [f64; 4] = classify_by_points(&self.points, value);
+        let depth = extinction * self.reference_length;
+        [r * depth, g * depth, b * depth, depth].map(|x| x as f32)
+    }
+
+    fn of_codes(&self, volume: &Volume, codes: Codes) -> Vec<[f32; 4]> {
+        let kind = volume.voxels.voxel_type();
+        let all = 0..codes.count();
+        all.map(|code| self.of(kind.number_of(code as u16)))
+            .collect()
+    }
+
+    /// One after another; beside each other many are alike.
+    fn of_each(&self, volume: &Volume) -> [Vec<f32>; 4] {
+        let count = volume.voxels.len();
+        let mut numbers: [Vec<f32>; 4] = std::array::from_fn(|_| Vec::with_capacity(count));
+        let mut last: Option<(u32, [f32; 4])> = None;
+        for i in 0..count {
+            let stored = volume.voxels.stored(i);
+            let material = match last {
+                Some((bits, material)) if bits == stored.to_bits() => material,
+                _ => self.of(stored),
+            };
+            last = Some((stored.to_bits(), material));
+            for (of, number) in numbers.iter_mut().zip(material) {
+                of.push(number);
+            }
+        }
+        numbers
+    }
+}
+
+/// What [`preclassified`] makes of each code of the voxels (`Voxels::codes`); `None` of voxels without codes.
+pub fn materials_of_codes(
+    volume: &Volume,
+    function: &TransferFunction,
+    reference_length: f64,
+    space: ColorSpace,
+) -> Option<Vec<[f32; 4]>> {
+    let codes = volume.voxels.codes()?;
+    let materials = Materials::new(volume, function, reference_length, space);
+    Some(materials.of_codes(volume, codes))
+}
 
 /// Red, green and blue, as they are blended in `space`, times the optical depth over `reference_length`, and that
 /// depth: floats on the grid of `volume`, no data where it has none.
@@ -27,22 +93,19 @@ pub fn preclassified(
     reference_length: f64,
     space: ColorSpace,
 ) -> Result<[Volume; 4], Problem> {
-    let absorption = Absorption::Extinction { reference_length };
-    let points = Points::new(function, absorption, space);
-    let material = |i: usize| -> [f32; 4] {
-        let stored = f64::from(volume.voxels.stored(i));
-        let value = stored * volume.rescale.slope + volume.rescale.intercept;
-        let [r, g, b, extinction]: [f64; 4] = classify_by_points(&points, value);
-        let depth = extinction * reference_length;
-        [r * depth, g * depth, b * depth, depth].map(|x| x as f32)
-    };
-    let count = volume.voxels.len();
-    let mut numbers: [Vec<f32>; 4] = std::array::from_fn(|_| Vec::with_capacity(count));
-    for i in 0..count {
-        for (of, number) in numbers.iter_mut().zip(material(i)) {
-            of.push(number);
+    let materials = Materials::new(volume, function, reference_length, space);
+    // Of few voxels most codes would be classified for nothing.
+    let codes = volume.voxels.codes();
+    let numbers = match codes.filter(|codes| codes.count() <= volume.voxels.len()) {
+        Some(codes) => {
+            let table = materials.of_codes(volume, codes);
+            std::array::from_fn(|c| {
+                let column: Vec<f32> = table.iter().map(|material| material[c]).collect();
+                codes.look_up(&column)
+            })
         }
-    }
+        None => materials.of_each(volume),
+    };
     let made = |values: Vec<f32>| {
         let made = Volume::from_voxels(
             volume.dims,

@@ -30,6 +30,22 @@ pub struct Recording {
     pub frame: Frame,
 }
 
+impl Recording {
+    /// All of each ray in `count` parts, one after the other, of so many samples, sheets or points each: a part goes on with what
+    /// those before have left.
+    pub(crate) fn in_parts(self, count: usize, at_once: u32) -> Vec<Self> {
+        let part = |number: usize| {
+            let mut part = self;
+            let first = (number as u32).saturating_mul(at_once);
+            part.frame.is_first_brick = u32::from(number == 0);
+            part.frame.part_first = first;
+            part.frame.part_end = first.saturating_add(at_once).min(i32::MAX as u32);
+            part
+        };
+        (0..count).map(part).collect()
+    }
+}
+
 /// What bricks are recorded for.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Purpose {

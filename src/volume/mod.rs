@@ -8,6 +8,7 @@
 //!
 //! Knows nothing of Vulkan.
 
+mod codes;
 mod colors;
 mod components;
 mod crossings;
@@ -48,6 +49,7 @@ mod voxel_box;
 mod voxel_set;
 mod voxels;
 
+pub use codes::Codes;
 pub use colors::{luma, read_all, read_colors};
 pub(crate) use components::{Component, Components};
 pub use crossings::RayInterval;

@@ -5,6 +5,7 @@ mod classified;
 mod defaults;
 mod laws;
 mod one_voxel;
+mod parts;
 mod points;
 mod sheets;
 mod sums;

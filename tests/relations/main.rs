@@ -15,6 +15,7 @@ mod domain;
 mod lattice;
 mod macro_cells;
 mod projection;
+mod runs_on_device;
 mod skipping;
 mod skipping_beside;
 mod skipping_slices;

@@ -4,7 +4,7 @@ use super::Renderer;
 use crate::offscreen::Error;
 use crate::points::PointField;
 use crate::scene::{Beside, Scene};
-use crate::technique::field::{GpuField, parts};
+use crate::technique::field::GpuField;
 use crate::technique::{Recording, View};
 use std::sync::Arc;
 
@@ -41,7 +41,7 @@ impl Renderer<'_> {
     ) -> Result<Vec<Recording>, Error> {
         let at_once = self.field_samples_at_once(scene, view)?;
         view.tell_field(&self.made().sorted, &mut whole.frame);
-        Ok(parts(whole, view.field_parts(at_once), at_once))
+        Ok(whole.in_parts(view.field_parts(at_once), at_once))
     }
 
     fn field_samples_at_once(&self, scene: &Scene, view: &View) -> Result<u32, Error> {

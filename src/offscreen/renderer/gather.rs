@@ -106,7 +106,14 @@ impl Renderer<'_> {
                 recordings = seen.parts(recordings[0], points_at_once(gpu, scene));
                 Some(GpuViewPoints::new(gpu, &seen)?)
             }
-            _ => None,
+            _ => {
+                let at_once =
+                    view.splat_sheets_at_once(self.device.gpu().limits().max_loop_turns)?;
+                if let (count @ 2.., [whole]) = (view.splat_parts(at_once), recordings.as_slice()) {
+                    recordings = whole.in_parts(count, at_once);
+                }
+                None
+            }
         };
         let sky = self.path_sky.of(self.device.gpu(), scene)?;
         let beside = |recording: &Recording| -> Vec<_> {

@@ -14,7 +14,7 @@ mod rules;
 pub use gpu::GpuField;
 
 use super::gather::{GatherDesc, RayPass};
-use super::{Error, Recording, View};
+use super::{Error, View};
 use crate::gpu::Error as GpuError;
 use crate::points::PointField;
 use crate::shaders::Frame;
@@ -53,7 +53,7 @@ impl View<'_> {
         frame.field_scale = field.cells_per_radius().recip() as f32;
         frame.field_density = field.density_scale() as f32;
         frame.field_skips = self.settings.skip.into();
-        frame.points_end = i32::MAX as u32;
+        frame.part_end = i32::MAX as u32;
     }
 
     /// How many samples of a ray one recording takes, so that its loops are no longer than the device allows: of each, its points,
@@ -91,17 +91,4 @@ impl View<'_> {
         let samples = self.longest_sample_count().ceil() + 3.0;
         (samples / f64::from(at_once)).ceil() as usize
     }
-}
-
-/// `whole` in parts of so many samples of each ray, one after the other: each goes on with what those before have left.
-pub(crate) fn parts(whole: Recording, count: usize, at_once: u32) -> Vec<Recording> {
-    let part = |number: usize| {
-        let mut part = whole;
-        let first = (number as u32).saturating_mul(at_once);
-        part.frame.is_first_brick = u32::from(number == 0);
-        part.frame.points_first = first;
-        part.frame.points_end = first.saturating_add(at_once).min(i32::MAX as u32);
-        part
-    };
-    (0..count).map(part).collect()
 }

@@ -22,8 +22,6 @@ use glam::{DMat3, DVec3};
 pub const MAX_OPEN_SHEETS: usize = 24;
 /// Rays that are steeper beside the slices of a stack than this are refused.
 const STEEPEST_DEGREES: f64 = 75.0;
-/// Turns of loops that are not gone round for every slice.
-const SPARE_TURNS: f64 = 1024.0;
 /// Rays across and down that are looked at for all of a picture, those of its corners among them.
 const RAYS: u32 = 33;
 
@@ -81,6 +79,7 @@ pub(in crate::technique) struct OfSplats {
     pub splat_first: [i32; 3],
     pub splat_last: [i32; 3],
     pub splat_halo: [f32; 3],
+    pub part_end: u32,
 }
 
 impl View<'_> {
@@ -99,48 +98,6 @@ impl View<'_> {
         let pixel = longest(rays.origin_dx, rays.origin_dy)
             + depth * longest(rays.direction_dx, rays.direction_dy);
         (splat.low_pass * pixel / (splat.std * self.grid.smallest_spacing())).max(1.0)
-    }
-
-    /// Whether the loops of the longest ray end where they should on a device that counts their turns: over slices,
-    /// over the voxels near the ray in each, and over clip planes for these. Of scattered points [`super::ViewPoints`]
-    /// knows.
-    ///
-    /// # Errors
-    /// [`Error::SplatLoopsEnd`].
-    pub(in crate::technique) fn check_splat_turns(&self, max_loop_turns: u32) -> Result<(), Error> {
-        if self.settings.splat.of_points {
-            return Ok(());
-        }
-        let kernel = Kernel::of(self);
-        let clips = self.settings.clip_planes.len() as f64;
-        let of_each = 1.0 + if clips > 0.0 { clips + 1.0 } else { 0.0 };
-        let stack = stack_axis(self);
-        let is_stack = uses_stack(self.settings);
-        let (mut most, mut splats) = (0.0, 0.0);
-        for (origin, direction, _) in self.some_rays() {
-            let (o, d) = (origin.to_array(), direction.to_array());
-            let axis = if is_stack { stack } else { main_axis(d) };
-            let line = Line::of_kernel(&kernel, axis, o, d);
-            let voxels: f64 = line
-                .half_widths
-                .iter()
-                .map(|w| (2.0 * w + 1.0).ceil())
-                .product();
-            let n = f64::from(self.grid.dims[axis]);
-            let turns = n * (2.0 + voxels * of_each);
-            if turns > most {
-                (most, splats) = (turns, n * voxels);
-            }
-        }
-        // Sheets are closed one by one.
-        let room = f64::from(max_loop_turns) - 2.0 * self.longest_sample_count() - SPARE_TURNS;
-        match most <= room {
-            true => Ok(()),
-            false => Err(Error::SplatLoopsEnd {
-                wanted: splats,
-                limit: (room.max(0.0) * splats / most).floor(),
-            }),
-        }
     }
 
     /// The parameters of splats; nothing for other techniques.
@@ -176,12 +133,13 @@ impl View<'_> {
             splat_first: (low - 0.5).ceil().as_ivec3().to_array(),
             splat_last: ((high - 0.5).ceil() - 1.0).as_ivec3().to_array(),
             splat_halo: halo.as_vec3().to_array(),
+            part_end: i32::MAX as u32,
         })
     }
 
     /// Rays through pixels that lie evenly over the picture, its corners among them: origin and direction in voxel
     /// space for unit directions in the world, and the cosine of their angle to the forward direction.
-    fn some_rays(&self) -> impl Iterator<Item = (DVec3, DVec3, f64)> {
+    pub(super) fn some_rays(&self) -> impl Iterator<Item = (DVec3, DVec3, f64)> {
         let rays = self.rays();
         let voxel_from_world = self.world_from_voxel().inverse();
         let [width, height] = self.extent_pixels.map(f64::from);

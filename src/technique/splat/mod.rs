@@ -12,6 +12,7 @@ pub mod kernel;
 mod line;
 mod open_sheets;
 pub mod oracle;
+mod parts;
 pub mod points;
 #[doc(hidden)]
 pub mod reference;

@@ -8,6 +8,7 @@
 //! Two bits a voxel, whatever the set; payloads lie without gaps, in the order of [`Runs::voxels`].
 
 use super::Runs;
+use std::ops::Range;
 
 /// Of 32 voxels of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -77,6 +78,17 @@ impl RunBits {
     /// # Panics
     /// As [`Runs::bits`].
     pub fn of_rows(dims: [u32; 3], mut is_full: impl FnMut(usize) -> bool) -> Self {
+        Self::of_masks(dims, |voxels| {
+            let bits = (0_u32..).zip(voxels);
+            bits.fold(0, |mask, (bit, n)| mask | u32::from(is_full(n)) << bit)
+        })
+    }
+
+    /// The same by a mask for up to 32 voxels of a row at once: bit b says whether voxel `start + b` of the range is full.
+    ///
+    /// # Panics
+    /// As [`Runs::bits`].
+    pub fn of_masks(dims: [u32; 3], mut mask_of: impl FnMut(Range<usize>) -> u32) -> Self {
         let [row_length, ny, nz] = dims.map(|n| n as usize);
         let words_per_row = row_length.div_ceil(VOXELS as usize);
         let mut words = Vec::with_capacity(words_per_row * ny * nz);
@@ -84,9 +96,8 @@ impl RunBits {
         for row in 0..ny * nz {
             for start in (0..row_length).step_by(VOXELS as usize) {
                 let count = (row_length - start).min(VOXELS as usize);
-                let mask = (0..count).fold(0, |mask, bit| {
-                    mask | u32::from(is_full(row * row_length + start + bit)) << bit
-                });
+                let at = row * row_length + start;
+                let mask = mask_of(at..at + count);
                 words.push(RankWord { mask, first });
                 let next = first.checked_add(mask.count_ones());
                 first = next.expect("less than 2^32 full voxels");
@@ -126,13 +137,18 @@ impl RunBits {
 
     /// Numbers of the full voxels in the order of their ranks: voxel `i` of a row is `row` times the length of a row + `i`.
     pub fn voxels(&self) -> impl Iterator<Item = usize> + '_ {
-        let rows = self.words.chunks(self.words_per_row.max(1)).enumerate();
-        rows.flat_map(move |(row, words)| {
-            words.iter().enumerate().flat_map(move |(number, word)| {
-                let bits = (0..VOXELS).filter(move |bit| word.mask >> bit & 1 == 1);
-                let first = row * self.row_length + number * VOXELS as usize;
-                bits.map(move |bit| first + bit as usize)
-            })
+        // The next word, and what is left of the one before, whose first voxel has this number.
+        let (mut next, mut rest, mut first) = (0, 0_u32, 0);
+        std::iter::from_fn(move || {
+            while rest == 0 {
+                rest = self.words.get(next)?.mask;
+                let (row, in_row) = (next / self.words_per_row, next % self.words_per_row);
+                first = row * self.row_length + in_row * VOXELS as usize;
+                next += 1;
+            }
+            let bit = rest.trailing_zeros();
+            rest &= rest - 1;
+            Some(first + bit as usize)
         })
     }
 

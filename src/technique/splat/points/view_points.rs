@@ -93,15 +93,10 @@ impl ViewPoints {
     /// `whole` in parts of at most so many points of a list, one after the other: each goes on with what those before have
     /// left.
     pub fn parts(&self, whole: Recording, at_once: u32) -> Vec<Recording> {
-        let firsts = (0..self.longest_list().max(1)).step_by(at_once as usize);
-        let part = |first: u32| {
-            let mut part = whole;
-            part.frame.is_first_brick = u32::from(first == 0);
-            part.frame.points_first = first;
-            part.frame.points_end = first.saturating_add(at_once);
-            part
-        };
-        firsts.map(part).collect()
+        whole.in_parts(
+            self.longest_list().max(1).div_ceil(at_once) as usize,
+            at_once,
+        )
     }
 
     /// The points that a pixel of a picture so wide may see, from front to back.
