@@ -25,6 +25,7 @@
 #import distance_map
 #import majorants
 #import random
+#import sobol
 #import elementary
 #import phase
 #import surface
@@ -57,6 +58,12 @@ const NUMBERS_OF_DRAW: u32 = 4u;
 const OF_COLLISION: u32 = 1u;
 const OF_DIRECTION: u32 = 2u;
 const OF_SKY: u32 = 3u;
+
+// Choices of a path whose numbers fill the square evenly: where in its pixel it begins, where the light of its first collision comes
+// from, and where it goes on there.
+const PAIR_OF_PIXEL: u32 = 0u;
+const PAIR_OF_LIGHT: u32 = 1u;
+const PAIR_OF_DIRECTION: u32 = 2u;
 
 // Behind so many bounces, weights under LEAST end by chance.
 const FEWEST_BOUNCES: u32 = 4u;
@@ -131,7 +138,7 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
             var numbers: vec4<f32>;
             if !is_last || (leaves_layers() && !path.has_met) {
                 key.z = draw + OF_COLLISION;
-                numbers = random_numbers(key);
+                numbers = numbers_of_bounce(key, PAIR_OF_LIGHT, path.bounces);
                 at.place = walk.world.origin + walk.t * walk.world.direction;
                 at.direction = walk.world.direction;
                 at.rank = walk.levels.rank;
@@ -166,7 +173,7 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
         }
         if state == SCATTER {
             key.z = NUMBERS_OF_DRAW * path.draw + OF_DIRECTION;
-            let numbers = random_numbers(key);
+            let numbers = numbers_of_bounce(key, PAIR_OF_DIRECTION, path.bounces);
             path.bounces++;
             layers = with_bounce(layers);
             let next = scattered(at, numbers);
@@ -192,8 +199,9 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
                 key.y = sample;
                 key.z = 0u;
                 sample++;
-                let numbers = random_numbers(key);
-                walk = walk_along(through_lens(pixel_ray(vec2<f32>(pixel) + numbers.xy), numbers.zw));
+                let in_pixel = sobol_numbers(key, PAIR_OF_PIXEL);
+                let on_lens = random_numbers(key).zw;
+                walk = walk_along(through_lens(pixel_ray(vec2<f32>(pixel) + in_pixel), on_lens));
                 let visible = visible_interval(vec2(walk.t, walk.end), walk.world, vec2<f32>(pixel));
                 walk.t = visible.x;
                 walk.end = visible.y;
@@ -272,6 +280,12 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
     let count = f32(frame.path_count);
     textureStore(picture, pixel, mean + (sum - count * mean) / (f32(frame.path_before) + count));
     leave_layers(pixel, layers, count);
+}
+
+// Numbers of a draw, of which those of the first bounce end with a pair of choices that fill the square evenly.
+fn numbers_of_bounce(key: vec4<u32>, pair: u32, bounces: u32) -> vec4<f32> {
+    let numbers = random_numbers(key);
+    return vec4(numbers.xy, select(numbers.zw, sobol_numbers(key, pair), bounces == 0u));
 }
 
 // Rays through a thin lens meet where they meet the plane of focus.
@@ -382,7 +396,7 @@ fn light_at(at: ptr<function, Collision>, numbers: vec4<f32>, key: vec4<u32>) ->
     var way: vec3<f32>;
     var irradiance: vec3<f32>;
     if i == frame.light_count {
-        way = sky_drawn(random_numbers(key));
+        way = sky_drawn(vec4(numbers.z, random_numbers(key).yzw));
         let of_sky = sky_at(way);
         let both = of_sky.density + f32(count) * scattering_density(*at, way);
         irradiance = select(vec3(0.0), of_sky.radiance / (3.1415927 * both), of_sky.density > 0.0);

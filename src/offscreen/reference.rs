@@ -22,7 +22,9 @@ use crate::technique::composite::Composite;
 use crate::technique::faces::{FACE_LENGTH, cut_face, on_face};
 use crate::technique::mixture::color_of;
 use crate::technique::own_grid::{ChannelGrids, place_in_channel};
-use crate::technique::pathtrace::{Guide, PathTracing, denoised, guide_of};
+use crate::technique::pathtrace::{
+    Guide, PathTracing, denoised, guide_of, half_of_path, left_of_half,
+};
 use crate::technique::reference::{Gathered, Samples, moved};
 use crate::technique::shading::shade;
 use crate::technique::splat::ViewPoints;
@@ -104,7 +106,7 @@ fn put_over(scene: &Scene, geometry: Option<&Geometry>, picture: &mut Picture) {
 /// Paths in two halves, and what both say without noise.
 fn render_denoised<R: Real>(scene: &Scene) -> Result<Picture, Error> {
     let path = &scene.settings.path;
-    let of_half = |first_sample, samples| {
+    let of_paths = |first_sample, samples| {
         let settings = &Settings {
             path: PathTracing {
                 first_sample,
@@ -116,10 +118,27 @@ fn render_denoised<R: Real>(scene: &Scene) -> Result<Picture, Error> {
         };
         render_gathered::<R>(&Scene { settings, ..*scene }, None)
     };
-    let half = path.samples.div_ceil(2);
-    let counts = [half, path.samples - half];
-    let (first, of_first) = of_half(path.first_sample, counts[0])?;
-    let (second, of_second) = of_half(path.first_sample + half, counts[1])?;
+    let mut halves: [Option<OfPaths<R>>; 2] = [None, None];
+    let mut traced = 0;
+    while traced < path.samples {
+        let number = path.first_sample + traced;
+        let count = left_of_half(number).min(path.samples - traced);
+        let (picture, gathered) = of_paths(number, count)?;
+        let half = &mut halves[half_of_path(number)];
+        *half = Some(match half.take() {
+            None => (picture, gathered, count),
+            Some(before) => joined(before, (picture, gathered, count)),
+        });
+        traced += count;
+    }
+    let [Some(first), Some(second)] = halves else {
+        // All are of one half, which does not tell what is noise.
+        let (picture, _) = of_paths(path.first_sample, path.samples)?;
+        return Ok(picture);
+    };
+    let (first, of_first, in_first) = first;
+    let (second, of_second, in_second) = second;
+    let counts = [in_first, in_second];
     let guides = [&of_first, &of_second].map(|half| guides_of(half));
     let pixels = denoised(
         [&first.pixels, &second.pixels],
@@ -134,6 +153,22 @@ fn render_denoised<R: Real>(scene: &Scene) -> Result<Picture, Error> {
         layers,
         ..first
     })
+}
+
+/// A picture of so many paths, and what they have left for it.
+type OfPaths<R> = (Picture, Vec<Gathered<R>>, u32);
+
+/// The mean of all paths of both.
+fn joined<R: Real>((a, of_a, in_a): OfPaths<R>, (b, of_b, in_b): OfPaths<R>) -> OfPaths<R> {
+    let counts = [in_a, in_b];
+    let [u, v] = counts.map(|count| f64::from(count) / f64::from(in_a + in_b));
+    let mean = |(a, b): (&[f32; 4], &[f32; 4])| {
+        std::array::from_fn(|c| (u * f64::from(a[c]) + v * f64::from(b[c])) as f32)
+    };
+    let pixels = a.pixels.iter().zip(&b.pixels).map(mean).collect();
+    let gathered = of_a.into_iter().zip(of_b);
+    let gathered = gathered.map(|both| mean_of_paths(both, counts)).collect();
+    (Picture { pixels, ..a }, gathered, in_a + in_b)
 }
 
 /// What paths leave for the filter.

@@ -29,7 +29,7 @@ pub use states::State;
 pub use table::{CLAMPED_FAULTS, FAULTS};
 pub use table_geometry::{CONE_FAULTS, END_FAULTS};
 pub use table_probes::PROBE_FAULTS;
-pub use table_scatter::{GRAZING_FAULT, SCATTER_FAULTS};
+pub use table_scatter::{DARK_FAULT, GRAZING_FAULT, HALO_FAULT, SCATTER_FAULTS};
 pub use table_splat::SPLAT_FAULTS;
 pub use table_voxels::VOXEL_FAULTS;
 pub use table_warp::WARP_FAULTS;

@@ -25,6 +25,20 @@ pub const GRAZING_FAULT: Fault = Shader(
     "vec2(0.0)",
 );
 
+/// Majorants of a cell leave out the voxels around it: where the device makes them (`tests/exact/macro_cells.rs`).
+pub const HALO_FAULT: Fault = Shader(
+    "macro_cells.wgsl",
+    "let halo = vec3(cell_grid.halo);",
+    "let halo = vec3(0);",
+);
+
+/// Where less than a tenth of a light comes through, none does (`tests/exact/pathtrace/trackers.rs`).
+pub const DARK_FAULT: Fault = Shader(
+    "pathtrace.wgsl",
+    "select(0.0, LEAST / most, u.y * LEAST < most)",
+    "0.0",
+);
+
 /// What is wrong, how, and the case that must see it.
 pub const SCATTER_FAULTS: &[(&str, Fault, &str)] = &[
     (
@@ -166,6 +180,25 @@ pub const SCATTER_FAULTS: &[(&str, Fault, &str)] = &[
             "return vec4<f32>(pcg4d(key) >> vec4(8u)) * (1.0 / 16777216.0);",
             "return ceil(vec4<f32>(pcg4d(key) >> vec4(8u)) * (1.0 / 65536.0)) * (1.0 / 256.0);",
         ),
+        ISOTROPIC,
+    ),
+    (
+        "a direction number of Sobol's second dimension is another",
+        Shader(
+            "lib/sobol.wgsl",
+            "y ^= (y >> 2u) & 0x33333333u;",
+            "y ^= (y >> 2u) & 0x33333332u;",
+        ),
+        ISOTROPIC,
+    ),
+    (
+        "all pixels have the points of one",
+        Shader("lib/sobol.wgsl", "pcg4d(vec4(key.x,", "pcg4d(vec4(0u,"),
+        ISOTROPIC,
+    ),
+    (
+        "both halves of the paths have the same points",
+        Shader("lib/sobol.wgsl", "(2u * pair + half)", "(2u * pair)"),
         ISOTROPIC,
     ),
     (

@@ -28,6 +28,7 @@ mod half_angle;
 mod light;
 mod lit_slabs;
 mod long_rays;
+mod macro_cells;
 mod main_axis;
 mod maximum;
 mod mixtures;

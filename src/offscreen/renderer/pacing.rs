@@ -125,7 +125,7 @@ pub fn passes_of(scene: &Scene, has_layers: bool, max_loop_turns: u32) -> usize 
     let rays = match settings.technique.traces_paths() {
         true => {
             let at_once = paths_at_once(scene.transfer, max_loop_turns);
-            passes_of_paths(settings.path.samples, at_once)
+            passes_of_paths(settings.path.first_sample, settings.path.samples, at_once)
         }
         false => settings.rays_per_side.pow(2),
     };

@@ -4,7 +4,7 @@
 //! layer = sum over blocks of (paths of the block) (mean of the block) / all paths
 //! ```
 //!
-//! Sums are f64, of even and of odd blocks, and of the images alone that somebody wants: layers, or guides of the filter that
+//! Sums are f64, of both halves of the blocks, and of the images alone that somebody wants: layers, or guides of the filter that
 //! takes noise out.
 
 use super::Renderer;
@@ -22,7 +22,7 @@ const BYTES_OF_IMAGE: usize = 8 * 2 * 4;
 /// Sums of the images that paths fill.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct PathImages {
-    /// Of even and of odd blocks, for each pixel; `None`: nobody wants it.
+    /// Of both halves, for each pixel; `None`: nobody wants it.
     images: [Option<[Vec<[f64; 4]>; 2]>; PATH_IMAGES],
 }
 
@@ -60,7 +60,7 @@ impl PathImages {
         BYTES_OF_IMAGE * self.mask().count_ones() as usize
     }
 
-    /// As they stand in a file: of each image all pixels of even blocks, then all of odd ones.
+    /// As they stand in a file: of each image all pixels of one half, then all of the other.
     pub fn numbers(&self) -> impl Iterator<Item = &f64> {
         self.images.iter().flatten().flatten().flatten().flatten()
     }

@@ -1,7 +1,7 @@
 //! What paths have brought so far: sums that another run can go on with.
 //!
 //! ```text
-//! mean     = (sum of even blocks + sum of odd blocks) / N
+//! mean     = (sum of one half of the blocks + sum of the other) / N
 //! noise    = sqrt(sum over pixels of the variance of their means) / sqrt(sum of their squares)      of luminance
 //! variance = (S2 - S1^2 / N) / (N (B - 1))
 //! ```
@@ -17,7 +17,7 @@ use crate::technique::pathtrace::Guide;
 /// Sums of the paths of a picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PathSums {
-    /// Of even and of odd blocks, two pictures of different paths.
+    /// Two pictures whose paths know nothing of each other (`shaders/lib/sobol.wgsl`).
     halves: [Vec<[f64; 4]>; 2],
     paths_of_halves: [u32; 2],
     blocks: u32,
@@ -47,9 +47,9 @@ impl PathSums {
         Some(Self::HEAD_BYTES as u64 + pixels * bytes_of_pixel as u64)
     }
 
-    /// As they stand in a file, little-endian: four u32, blocks, the paths of even and of odd ones, and a bit for each image
-    /// that is there beside the colours; then f64, for each pixel the sum of even blocks, for each that of odd blocks, for each
-    /// S1 and S2, and of each image the sums of even and of odd blocks.
+    /// As they stand in a file, little-endian: four u32, blocks, the paths of one half and of the other, and a bit for each image
+    /// that is there beside the colours; then f64, for each pixel the sum of one half, for each that of the other, for each
+    /// S1 and S2, and of each image the sums of both halves.
     pub fn to_bytes(&self) -> Vec<u8> {
         let [even, odd] = self.paths_of_halves;
         let mut bytes = Vec::new();
@@ -119,14 +119,13 @@ impl PathSums {
         Ok(())
     }
 
-    /// Which half the next block is one of, and the images that it is added to.
-    pub(super) fn next(&mut self) -> (usize, &mut PathImages) {
-        ((self.blocks % 2) as usize, &mut self.images)
+    /// What paths leave beside their colours, which each block is added to.
+    pub(super) fn images(&mut self) -> &mut PathImages {
+        &mut self.images
     }
 
-    /// One more block: the means of so many paths.
-    pub(super) fn add(&mut self, found: &[[f32; 4]], paths: u32) {
-        let (half, _) = self.next();
+    /// One more block of one half: the means of so many paths.
+    pub(super) fn add(&mut self, half: usize, found: &[[f32; 4]], paths: u32) {
         for half in &mut self.halves {
             half.resize(found.len(), [0.0; 4]);
         }
@@ -153,9 +152,9 @@ impl PathSums {
         even.iter().zip(odd).map(mean).collect()
     }
 
-    /// Two pictures of different paths; `None` where one block is all.
+    /// Two pictures of different paths; `None` where one has none.
     pub(super) fn halves(&self) -> Option<[Vec<[f32; 4]>; 2]> {
-        (self.blocks > 1).then(|| {
+        self.paths_of_halves.iter().all(|&n| n > 0).then(|| {
             [0, 1].map(|half| {
                 let count = f64::from(self.paths_of_halves[half]);
                 let mean = |sum: &[f64; 4]| sum.map(|s| (s / count) as f32);
@@ -208,7 +207,7 @@ impl PathSums {
     }
 }
 
-/// Blocks, paths of even and of odd ones, and the mask of images.
+/// Blocks, paths of both halves, and the mask of images.
 fn counts_of(head: [u8; PathSums::HEAD_BYTES]) -> [u32; 4] {
     std::array::from_fn(|i| {
         let bytes = head[4 * i..][..4].try_into();
@@ -242,7 +241,7 @@ mod tests {
                 [paths.map(|path| of_path(i, path)).sum::<f32>() / count as f32; 4]
             };
             let found: Vec<_> = (0..4096).map(pixel).collect();
-            sums.add(&found, count);
+            sums.add((sums.blocks % 2) as usize, &found, count);
             first += count;
         }
         sums

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! A block is one pass over the picture, cut by tiles as any other; between two of them a picture can end. Which paths are
-//! a block depends on their numbers alone, so that a picture that is gone on with has the blocks of one that never stopped.
+//! a block depends on their numbers alone, and all of a block are of one half, so that a picture that is gone on with has the blocks of one that never stopped.
 
 use super::Renderer;
 use super::path_sums::PathSums;
@@ -13,16 +13,17 @@ use crate::offscreen::Error;
 use crate::offscreen::layer_rules::{Clock, has_path_layers};
 use crate::picture::{Layer, LayerKind};
 use crate::scene::Scene;
-use crate::technique::pathtrace::{PathTracing, denoised, paths_at_once};
+use crate::technique::pathtrace::{
+    PathTracing, denoised, half_of_path, left_of_half, paths_at_once,
+};
 use crate::technique::{InPixel, Settings};
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// The first paths of a picture come in blocks of few, so that of few paths several blocks tell the noise.
-const EARLY: u32 = 8;
-const EARLY_AT_ONCE: u32 = 2;
+/// Behind each multiple of so many paths blocks are as large as they come.
+const ALIKE_FROM: u32 = 16;
 
 /// The fewest paths after which is looked at the noise; then at each doubling.
 const FIRST_LOOK: u32 = 16;
@@ -30,18 +31,24 @@ const FIRST_LOOK: u32 = 16;
 /// How long paths are traced before their sums are kept anew.
 const KEPT_EVERY: Duration = Duration::from_secs(30);
 
-/// How many paths the block behind `done` of them has.
-fn block_behind(done: u32, at_once: u32) -> u32 {
-    match done < EARLY {
-        true => EARLY_AT_ONCE,
-        false => at_once,
-    }
+/// How many paths the block that begins with this one has: all are of one half. The first come in blocks of few, so that of few
+/// paths several blocks tell the noise.
+fn block_from(number: u32, at_once: u32) -> u32 {
+    at_once.min(left_of_half(number))
 }
 
-/// How many passes so many paths take, of which so many come at once.
-pub(super) fn passes_of_paths(paths: u32, at_once: u32) -> u32 {
-    let early = paths.min(EARLY);
-    early.div_ceil(EARLY_AT_ONCE) + (paths - early).div_ceil(at_once)
+/// How many passes so many paths take from this one on, of which so many come at once.
+pub(super) fn passes_of_paths(first: u32, paths: u32, at_once: u32) -> u32 {
+    let (mut number, mut left, mut passes) = (first, paths, 0);
+    while left > 0 {
+        // Behind the first ones all blocks are alike.
+        if number.is_multiple_of(ALIKE_FROM) && number > 0 {
+            return passes + left.div_ceil(at_once);
+        }
+        let block = block_from(number, at_once).min(left);
+        (number, left, passes) = (number + block, left - block, passes + 1);
+    }
+    passes
 }
 
 /// What the last picture of paths took.
@@ -150,7 +157,7 @@ impl<'v> Renderer<'v> {
         let mut sums = std::mem::take(&mut self.path_ends.begun);
         sums.want(wanted, all.denoise || self.path_ends.keeping.is_some())?;
         let begun_paths = sums.paths();
-        self.passes_done[0] = passes_of_paths(begun_paths, at_once) as usize;
+        self.passes_done[0] = passes_of_paths(all.first_sample, begun_paths, at_once) as usize;
         let traced = |sums: &PathSums| Traced {
             paths: sums.paths(),
             begun: begun_paths,
@@ -161,7 +168,7 @@ impl<'v> Renderer<'v> {
             if self.path_ends.are_reached(&sums, all, begun) {
                 break true;
             }
-            let paths = block_behind(sums.paths(), at_once);
+            let paths = block_from(all.first_sample + sums.paths(), at_once);
             if sums.paths() + paths > all.samples {
                 break false;
             }
@@ -172,6 +179,7 @@ impl<'v> Renderer<'v> {
             }
         };
         self.path_ends.keep(&sums, Duration::ZERO);
+        // Less than a block.
         let rest = all.samples.saturating_sub(sums.paths());
         if !has_ended && rest > 0 {
             self.trace(scene, rest, &mut sums, clock)?;
@@ -210,9 +218,9 @@ impl<'v> Renderer<'v> {
         let block = &Scene { settings, ..*scene };
         let (found, gpu_ms) = self.colors(block, InPixel::CENTER)?;
         clock.add(gpu_ms);
-        let (half, images) = sums.next();
-        self.add_path_images((half, paths), images)?;
-        sums.add(&found, paths);
+        let half = half_of_path(settings.path.first_sample);
+        self.add_path_images((half, paths), sums.images())?;
+        sums.add(half, &found, paths);
         Ok(())
     }
 

@@ -20,6 +20,7 @@ mod random;
 pub mod reference;
 mod rules;
 mod sky;
+mod sobol;
 mod surface;
 mod walk;
 
@@ -30,6 +31,7 @@ pub use lamp::{Lamp, LampShape};
 pub(crate) use layers::{PATH_IMAGES, PathMeans, images_of, numbers_of};
 pub(crate) use phase::phase_value;
 pub use sky::{SkyError, SkyPicture};
+pub(crate) use sobol::{half_of_path, left_of_half};
 
 use super::gather::{Gather, GatherDesc, RayPass, rays_of};
 use super::registry::TechniqueDesc;

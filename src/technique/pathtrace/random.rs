@@ -3,7 +3,7 @@
 
 use crate::real::Real;
 
-fn pcg4d(key: [u32; 4]) -> [u32; 4] {
+pub(super) fn pcg4d(key: [u32; 4]) -> [u32; 4] {
     let mix = |[mut x, mut y, mut z, mut w]: [u32; 4]| {
         x = x.wrapping_add(y.wrapping_mul(w));
         y = y.wrapping_add(z.wrapping_mul(x));

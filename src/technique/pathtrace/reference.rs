@@ -6,6 +6,7 @@ use super::lamp::{is_lamp, light_of_lamp};
 use super::layers::PathLayers;
 use super::phase::{phase_cosine, phase_value};
 use super::random::random_numbers;
+use super::sobol::sobol_numbers;
 use super::surface::{reflected, reflection, reflection_density};
 use super::walk::{Step, Walk};
 use crate::ray::{Ray, pixel_ray};
@@ -18,6 +19,11 @@ const NUMBERS_OF_DRAW: u32 = 4;
 const OF_COLLISION: u32 = 1;
 const OF_DIRECTION: u32 = 2;
 const OF_SKY: u32 = 3;
+/// Choices of a path whose numbers fill the square evenly: where in its pixel it begins, where the light of its first collision
+/// comes from, and where it goes on there.
+const PAIR_OF_PIXEL: u32 = 0;
+const PAIR_OF_LIGHT: u32 = 1;
+const PAIR_OF_DIRECTION: u32 = 2;
 /// Behind so many bounces, weights under `LEAST` end by chance.
 const FEWEST_BOUNCES: u32 = 4;
 const LEAST: f64 = 0.1;
@@ -69,7 +75,8 @@ impl<R: Real> Path<R> {
     ) -> Self {
         let frame = of.frame();
         let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));
-        let [x, y, u, v] = random_numbers::<R>(key);
+        let [x, y] = sobol_numbers::<R>(key, PAIR_OF_PIXEL);
+        let [.., u, v] = random_numbers::<R>(key);
         let [across, down] = corner.map(|n| R::from_f64(n.into()));
         let ray = pixel_ray(frame, [across + x, down + y]);
         let mut walk = Walk::along(frame, through_lens(frame, ray, [u, v]), None);
@@ -92,7 +99,7 @@ impl<R: Real> Path<R> {
             let albedo = R::from_f32(frame.path_albedo);
             let albedo = color.map(|c| c * albedo);
             key[2] += OF_COLLISION;
-            let numbers = random_numbers::<R>(key);
+            let numbers = path.numbers_of_bounce(key, PAIR_OF_LIGHT);
             let incoming = walk.world.direction;
             let normal = match walk.levels.has_crossed() {
                 true => Some(walk.levels.normal(frame, incoming)),
@@ -135,7 +142,7 @@ impl<R: Real> Path<R> {
                 path.layers.add_light(brought, path.bounces + 1);
             }
             key[2] = NUMBERS_OF_DRAW * path.draw + OF_DIRECTION;
-            let numbers = random_numbers::<R>(key);
+            let numbers = path.numbers_of_bounce(key, PAIR_OF_DIRECTION);
             path.bounces += 1;
             path.layers.add_bounce();
             let (direction, weight) = at.scattered(frame, numbers);
@@ -180,6 +187,16 @@ impl<R: Real> Path<R> {
             false => R::from_f64(1.0),
         };
         std::array::from_fn(|c| found[c] * even[c] * part)
+    }
+
+    /// Numbers of a draw, of which those of the first bounce end with a pair of choices that fill the square evenly.
+    fn numbers_of_bounce(&self, key: [u32; 4], pair: u32) -> [R; 4] {
+        let [a, b, c, d] = random_numbers(key);
+        let [c, d] = match self.bounces {
+            0 => sobol_numbers(key, pair),
+            _ => [c, d],
+        };
+        [a, b, c, d]
     }
 
     /// The next numbers of the path.
@@ -420,7 +437,8 @@ impl<R: Real> Collision<'_, R> {
         let mut reach = R::from_f32(f32::MAX);
         let (way, color) = match self.sky {
             Some(sky) if i == frame.light_count as usize => {
-                let way = sky.drawn(frame, random_numbers(key));
+                let [_, chance, height, turn] = random_numbers(key);
+                let way = sky.drawn(frame, [numbers[2], chance, height, turn]);
                 let (radiance, density) = sky.at(frame, way);
                 let both = density + count * self.density(frame, way);
                 let pi = R::from_f64(std::f64::consts::PI);

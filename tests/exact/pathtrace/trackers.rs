@@ -1,10 +1,15 @@
 //! What estimators say not only in the mean, and units: variances of trackers, turned and scaled worlds.
 
 use super::{
-    around_blobs, blobs, drawn, eye, layer, light, lit, matter, mean, mean_of, scene, settings,
+    around_blobs, assert_near, blobs, drawn, eye, layer, light, lit, matter, mean, mean_of, scene,
+    settings,
 };
+use crate::driver_faults::{DARK_FAULT, alone, faulty, tell, told};
+use crate::shared::device;
 use glam::{DAffine3, DVec3, dvec3};
 use std::f64::consts::FRAC_PI_2;
+use stratavox::gpu::{DeviceChoice, Headless, Options, PipelineCache, Validation};
+use stratavox::offscreen::Renderer;
 use stratavox::picture::Picture;
 use stratavox::technique::pathtrace::PathTracing;
 use stratavox::technique::{Light, LightSpace, Settings};
@@ -161,4 +166,53 @@ fn permuted_colours_are_a_permuted_picture() {
     for (&[r, g, b, a], other) in seen[0].pixels.iter().zip(&seen[1].pixels) {
         assert_eq!([b, r, g, a], *other);
     }
+}
+
+/// Light from behind a layer of depth D that is scattered once to the eye before it goes through all of it, L = D e^-D / 4, and as
+/// much of it by ways to the light of any depth: a shader that lets none through where less than a tenth would come is found by it.
+#[test]
+fn light_from_behind_a_deep_layer_comes_through() {
+    let (depth, times, density) = (6.0, 4.0, 3.0);
+    // Null collisions are three of four: a value that no voxel has is four times as dense.
+    let extinction = depth / density;
+    let points = [
+        (0.0, extinction),
+        (1.0, extinction),
+        (2.0, times * extinction),
+    ];
+    let function = matter([1.0; 3], &points);
+    let (volume, camera) = (layer(|_| 0.5), eye(DVec3::Z));
+    let settings = Settings {
+        skip: false,
+        ..settings(PathTracing {
+            samples: 32,
+            bounces: Some(1),
+            density,
+            lights: vec![light(-DVec3::Z)],
+            ..PathTracing::default()
+        })
+    };
+    let scene = scene(&volume, &function, &camera, &settings, [48; 2]);
+    let found = |device| {
+        let mut renderer = Renderer::new(device, &volume).expect("a renderer");
+        mean(&renderer.render(&scene, &[]).expect("drawn").picture, 0)
+    };
+    let wanted = 0.25 * depth * (-depth).exp();
+    assert_near("from behind", found(device()), wanted);
+    let options = Options {
+        pipeline_cache: PipelineCache::Off,
+        validation: Validation::Off,
+        ..Options::default()
+    };
+    let _alone = alone();
+    // SAFETY: its functions are Vulkan's, but for shaders that are others.
+    let with_fault = unsafe { Headless::through(faulty, &DeviceChoice::Default, &options) };
+    tell(Some(DARK_FAULT));
+    let [dark, error] = found(with_fault.expect("a device"));
+    assert!(told() > 0, "no shader has it");
+    tell(None);
+    assert!(
+        dark < wanted - 8.0 * error,
+        "{dark} +- {error}, not {wanted}"
+    );
 }

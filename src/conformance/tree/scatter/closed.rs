@@ -3,7 +3,7 @@
 //! ```text
 //! furnace   white matter in a white sky: each path brings 1
 //! deep      the same of matter so dense that paths are scattered a hundred times and more
-//! plane     of a value in vacuum, a light far away: each path brings albedo n . l
+//! plane     of a value in vacuum, a light far away, one bounce: each path brings albedo n . l
 //! cells     of N paths without bounces a binomial number meets matter of depth D: N (1 - e^-D), within 6 standard deviations
 //! ```
 
@@ -130,6 +130,8 @@ fn plane(bed: &mut TestBed) -> Result<Measurement, Stop> {
         }];
         settings.path = PathTracing {
             samples: 4,
+            // Before the outermost voxels, where the plane is bent, a path may meet it once more.
+            bounces: Some(1),
             lights: vec![light(way)],
             ..PathTracing::default()
         };
