@@ -153,7 +153,7 @@ fn the_device_makes_the_bytes_of_the_host_of_many_words() {
     let dims = [70, 128, 130];
     let count = dims.iter().product::<u32>() as usize;
     // Noise in layers, of which some are empty.
-    let value = |n: usize, noise: f64| noise * f64::from(u8::from(n / 9000 % 3 > 0));
+    let value = |n: usize, noise: f64| noise * f64::from(u8::from(!(n / 9000).is_multiple_of(3)));
     let values: Vec<f64> = (0..count).map(|n| value(n, numbers.next())).collect();
     let validity: Vec<u8> = (0..count)
         .map(|_| u8::from(numbers.next() > 0.01))
