@@ -5,9 +5,9 @@
 
 var<workgroup> sums: array<vec2<u32>, RUN_THREADS>;
 
-@compute @workgroup_size(RUN_THREADS)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let thread = id.x;
+@compute @workgroup_size(8, 8)
+fn main(@builtin(local_invocation_id) id: vec3<u32>) {
+    let thread = thread_of(id);
     let share = (run_build.block_count + RUN_THREADS - 1u) / RUN_THREADS;
     let first = run_build.texel_count + min(thread * share, run_build.block_count);
     let end = run_build.texel_count + min((thread + 1u) * share, run_build.block_count);

@@ -12,9 +12,9 @@ struct RunPayload {
 
 @group(0) @binding(64) var<storage, read_write> run_payloads: RunPayload;
 
-@compute @workgroup_size(RUN_THREADS)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) block: vec3<u32>) {
-    let number = id.x;
+@compute @workgroup_size(8, 8)
+fn main(@builtin(local_invocation_id) id: vec3<u32>, @builtin(workgroup_id) block: vec3<u32>) {
+    let number = block.x * RUN_THREADS + thread_of(id);
     if number >= run_build.texel_count {
         return;
     }

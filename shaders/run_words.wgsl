@@ -10,13 +10,13 @@
 // Full voxels and runs of the words up to a thread's own.
 var<workgroup> counts: array<vec2<u32>, RUN_THREADS>;
 
-@compute @workgroup_size(RUN_THREADS)
+@compute @workgroup_size(8, 8)
 fn main(
-    @builtin(global_invocation_id) id: vec3<u32>,
-    @builtin(local_invocation_index) thread: u32,
+    @builtin(local_invocation_id) id: vec3<u32>,
     @builtin(workgroup_id) block: vec3<u32>,
 ) {
-    let word = id.x;
+    let thread = thread_of(id);
+    let word = block.x * RUN_THREADS + thread;
     let mask = mask_of(word);
     let starts = mask & ~((mask << 1u) | full_before(word));
     let own = vec2(countOneBits(mask), countOneBits(starts));
@@ -29,7 +29,6 @@ fn main(
     add_before(thread, 8u);
     add_before(thread, 16u);
     add_before(thread, 32u);
-    add_before(thread, 64u);
     if word < run_build.texel_count {
         run_list.d[word] = vec2(mask, counts[thread].x - own.x);
     }

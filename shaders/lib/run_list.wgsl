@@ -1,7 +1,11 @@
 // Runs of classified voxels in the making: parameters of the three passes, and the words (shaders/run_words.wgsl).
 
-// Threads of a workgroup, which makes so many words; its sums are a block.
-const RUN_THREADS: u32 = 128u;
+// Threads of a workgroup, 8 x 8, which makes so many words; its sums are a block.
+const RUN_THREADS: u32 = 64u;
+
+fn thread_of(own: vec3<u32>) -> u32 {
+    return own.y * 8u + own.x;
+}
 
 struct RunBuild {
     // Voxels of a row, words of a row, words of all rows, and texels of their image, which has more.
