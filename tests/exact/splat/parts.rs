@@ -59,7 +59,7 @@ fn rays_longer_than_loops_may_be_are_drawn_in_parts_to_the_bit() {
         };
         let way = format!("{mode}, {sheets}, classified: {is_classified}");
         let whole = drawn(&scene, u32::MAX).expect(&way);
-        // One to some twenty parts, and the last of a few slices.
+        // From all at once to few sheets or slices at a time.
         for turns in [6000, 4000, 3000, 2500] {
             let cut = drawn(&scene, turns).unwrap_or_else(|e| panic!("{way}, {turns}: {e}"));
             assert_eq!(whole.pixels, cut.pixels, "{way}, {turns}");
