@@ -21,9 +21,9 @@ pub(crate) fn guide_of(means: &PathMeans) -> Guide {
 }
 
 /// How many numbers guide a pixel.
-const NUMBERS: usize = 7;
+pub(super) const NUMBERS: usize = 7;
 
-/// Albedo, normal and depth, as they are compared.
+/// Albedo, normal and depth, as they are compared and fitted to.
 pub(super) type Compared = [f32; NUMBERS];
 
 /// Guides of two halves as they are compared.
