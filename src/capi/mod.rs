@@ -94,7 +94,7 @@ pub use volume::{
 };
 pub use words::{
     sv_camera_kind, sv_color_space, sv_filter, sv_lattice, sv_mode, sv_scattering, sv_technique,
-    sv_version, sv_voxel_type,
+    sv_tone, sv_version, sv_voxel_type,
 };
 
 /// The version of the library's interface: SV_ABI_VERSION of the header that it was built with. Threads: any.

@@ -30,7 +30,7 @@ impl Renderer {
     /// Of how many paths a pixel the picture of the last frame is the mean ([`Technique::Pathtrace`](crate::technique::Technique)).
     /// Each frame adds [`samples_per_frame`](crate::technique::pathtrace::PathTracing::samples_per_frame), of a driver that counts
     /// the turns of loops 4 at most (through functions of gradients 2), until there are
-    /// [`samples`](crate::technique::pathtrace::PathTracing::samples): those after it trace none and show the same. Another camera, function, volume, size or settings, an update of the volume, and
+    /// [`samples`](crate::technique::pathtrace::PathTracing::samples): those after it trace none and show the same. Another camera, function, volume, size or settings (but for their tone), an update of the volume, and
     /// a frame in parts that was given up begin anew, with the same random numbers. What the host has drawn is not
     /// compared: see [`Renderer::restart_paths`].
     pub fn paths_traced(&self) -> u32 {

@@ -152,7 +152,7 @@ impl Renderer {
         self.show(Arc::clone(&self.volume), made)
     }
 
-    /// Other numbers in the settings from the next [`Renderer::record`] on: steps, crops, clip planes, levels, lights.
+    /// Other numbers in the settings from the next [`Renderer::record`] on: steps, crops, clip planes, levels, lights, tone.
     ///
     /// # Errors
     /// [`Error::OtherDescription`] where other pipelines or textures would be needed; nothing has changed then.
@@ -208,7 +208,14 @@ impl Renderer {
             let made = Function::new(&self.gpu, &self.volume, settings, None, emptying)?;
             self.show(Arc::clone(&self.volume), made)?;
         }
-        if let Some(there) = &self.function.paths {
+        let toned = Settings {
+            tone: class.settings.tone,
+            ..self.class.settings.clone()
+        };
+        // A tone is of the mean of paths, and of none of them.
+        if let Some(there) = &self.function.paths
+            && toned != class.settings
+        {
             self.function.paths = there.under(&class.settings, &self.volume);
             self.traced = None;
         }

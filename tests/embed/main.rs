@@ -34,4 +34,5 @@ mod slice_depth;
 mod stale;
 mod targets;
 mod threads;
+mod tone;
 mod update;
