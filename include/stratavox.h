@@ -1404,6 +1404,13 @@ sv_status sv_renderer_paths_traced(sv_renderer renderer,
                                    uint32_t *paths,
                                    struct sv_diagnostic *diagnostic);
 
+// How noisy that picture was `frames_in_flight` frames before: the root of the sum of the variances of its pixels' luminances
+// over that of their squares. It halves with four times as many paths, and nothing waits for it. SV_E_STATE while nothing is
+// known: of the first frames, and of a picture that has begun anew. Threads: one at a time for one renderer.
+sv_status sv_renderer_noise(sv_renderer renderer,
+                            double *noise,
+                            struct sv_diagnostic *diagnostic);
+
 // The next frame begins with the first path: where what the host has drawn has moved before the volume, and where a frame
 // that was recorded will not be submitted. Threads: one at a time for one renderer.
 sv_status sv_renderer_restart_paths(sv_renderer renderer,

@@ -66,7 +66,9 @@ pub use parts::{
     sv_pacing, sv_renderer_begin_parts, sv_renderer_record_part_into, sv_submitter_submit_in_parts,
     sv_submitter_update_in_parts, sv_submitter_upload_in_parts,
 };
-pub use paths::{sv_path_tracing, sv_renderer_paths_traced, sv_renderer_restart_paths};
+pub use paths::{
+    sv_path_tracing, sv_renderer_noise, sv_renderer_paths_traced, sv_renderer_restart_paths,
+};
 pub use pick::{sv_pick, sv_renderer_pick, sv_renderer_record_pick};
 pub use plan::{sv_plan, sv_volume_plan};
 pub use record::{

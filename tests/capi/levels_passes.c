@@ -178,8 +178,12 @@ static void of_paths(void) {
         draw_a(renderer, NULL, more);
     }
     expect(traced(renderer) == 5, "there are no more paths than were asked for");
+    double noise = 0.0;
+    CHECK(sv_renderer_noise(renderer, &noise, &diagnostic));
+    expect(noise > 0.01 && noise < 2.0, "paths tell how noisy their picture is");
     expect(memcmp(first, more, BYTES) != 0, "more paths show another picture");
     CHECK(sv_renderer_restart_paths(renderer, &diagnostic));
+    expect(sv_renderer_noise(renderer, &noise, &diagnostic) == SV_E_STATE, "nothing is known of what begins anew");
     draw_a(renderer, NULL, more);
     expect(traced(renderer) == 2 && !memcmp(first, more, BYTES), "the first paths are the same again");
     CHECK(sv_renderer_destroy(renderer, &diagnostic));

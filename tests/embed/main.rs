@@ -22,6 +22,7 @@ mod frames;
 mod geometry;
 mod layouts;
 mod levels;
+mod noise;
 mod parts;
 mod patches;
 mod paths;
