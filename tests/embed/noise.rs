@@ -188,21 +188,3 @@ fn what_traces_no_paths_has_no_noise() {
     frames(&host, &mut renderer, &stage.camera, 4);
     assert_eq!(renderer.noise(), None);
 }
-
-#[test]
-#[ignore = "measured"]
-fn zz_measure() {
-    let host = Host::new();
-    for samples in [1, 4096, 1, 4096] {
-        let mut stage = of_paths(samples);
-        stage.settings.path.samples_per_frame = 1;
-        stage.extent = [1024, 768];
-        let eye = stage.camera.eye;
-        stage.camera.target = eye + (eye - stage.camera.target);
-        let mut renderer = renderer(&host, &stage);
-        frames(&host, &mut renderer, &stage.camera, 4);
-        let begun = std::time::Instant::now();
-        frames(&host, &mut renderer, &stage.camera, 100);
-        println!("{samples}: {:.3} ms a frame", 10.0 * begun.elapsed().as_secs_f64());
-    }
-}

@@ -263,29 +263,3 @@ fn a_tone_of_what_is_no_light_is_refused_by_name() {
     let found = made.expect_err("refused").to_string();
     assert!(found.contains("tone mapping of slices"), "{found}");
 }
-
-#[test]
-#[ignore = "looked at"]
-fn zz_pictures() {
-    let host = Host::new();
-    for (name, tone) in ["a", "b", "c", "d", "e"].into_iter().zip(tones()) {
-        for size in [160, 480] {
-            let mut settings = bright();
-            settings.path.samples = 16;
-            settings.path.samples_per_frame = 4;
-            settings.path.surface = 4.0;
-            let mut stage = stage(settings);
-            stage.extent = [size, size * 3 / 4];
-            stage.settings.tone = tone;
-            let format = vk::Format::R8G8B8A8_SRGB;
-            let mut renderer = renderer(&host, &stage, format, SliceBlending::Float);
-            let image = HostImage::new(&host, format, stage.extent);
-            for _ in 0..4 {
-                drawn(&host, &mut renderer, &stage, &image, 'B');
-            }
-            let bytes: Vec<u8> = image.numbers().iter().flatten().map(|&n| n as u8).collect();
-            std::fs::write(format!("/tmp/rt-hosts/{name}{size}.rgba"), bytes).unwrap();
-            println!("{name} {tone:?} noise {:?}", renderer.noise());
-        }
-    }
-}
