@@ -176,6 +176,27 @@ typedef uint32_t sv_scattering;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
+// What is done with light near white and over it.
+enum sv_tone
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // Light over 1 is cut off by targets that do not hold it.
+    SV_TONE_NONE = 0,
+    // Colours stay, and bright ones fade to white (Khronos PBR neutral).
+    SV_TONE_NEUTRAL = 1,
+    // Soft in the dark and in the light (Hable 2010).
+    SV_TONE_FILMIC = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum sv_tone sv_tone;
+#else
+typedef uint32_t sv_tone;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
 // How a value between voxel centres is made.
 enum sv_filter
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -859,8 +880,10 @@ typedef struct sv_settings {
     const struct sv_path_tracing *paths;
     // sv_scattering, of composites by rays.
     uint32_t scattering;
-    // 0.
-    uint32_t reserved;
+    // sv_tone: what the light of composites and surfaces goes through on its way into the target.
+    uint32_t tone;
+    // It is multiplied by 2 to the power of this before, -126 to 126 stops.
+    double exposure;
 } sv_settings;
 
 // What is drawn over a picture, and what is known of the volume in it.
@@ -1380,6 +1403,13 @@ sv_status sv_submitter_update_in_parts(sv_submitter submitter,
 sv_status sv_renderer_paths_traced(sv_renderer renderer,
                                    uint32_t *paths,
                                    struct sv_diagnostic *diagnostic);
+
+// How noisy that picture was `frames_in_flight` frames before: the root of the sum of the variances of its pixels' luminances
+// over that of their squares. It halves with four times as many paths, and nothing waits for it. SV_E_STATE while nothing is
+// known: of the first frames, and of a picture that has begun anew. Threads: one at a time for one renderer.
+sv_status sv_renderer_noise(sv_renderer renderer,
+                            double *noise,
+                            struct sv_diagnostic *diagnostic);
 
 // The next frame begins with the first path: where what the host has drawn has moved before the volume, and where a frame
 // that was recorded will not be submitted. Threads: one at a time for one renderer.

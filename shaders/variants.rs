@@ -521,6 +521,8 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         &[constant("output", &["picture", "value"])],
     ),
     ("host_depth_copy", &[]),
+    ("path_noise", &[]),
+    ("path_noise_sums", &[]),
     ("round_cone_cover", &[]),
     ("round_cone", &[]),
     ("triangle_corner", &[]),

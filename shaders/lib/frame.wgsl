@@ -281,6 +281,9 @@ struct Frame {
     emission_point_count: u32,
     opacity_is_extinction: u32,
     extinction_is_colored: u32,
+    // In a host's target: what is done with light (tone.wgsl), and what it is multiplied by before.
+    tone: u32,
+    tone_gain: f32,
     path_majorants: array<vec4<f32>, MAJORANT_VECTORS>,
 }
 

@@ -66,7 +66,9 @@ pub use parts::{
     sv_pacing, sv_renderer_begin_parts, sv_renderer_record_part_into, sv_submitter_submit_in_parts,
     sv_submitter_update_in_parts, sv_submitter_upload_in_parts,
 };
-pub use paths::{sv_path_tracing, sv_renderer_paths_traced, sv_renderer_restart_paths};
+pub use paths::{
+    sv_path_tracing, sv_renderer_noise, sv_renderer_paths_traced, sv_renderer_restart_paths,
+};
 pub use pick::{sv_pick, sv_renderer_pick, sv_renderer_record_pick};
 pub use plan::{sv_plan, sv_volume_plan};
 pub use record::{
@@ -94,7 +96,7 @@ pub use volume::{
 };
 pub use words::{
     sv_camera_kind, sv_color_space, sv_filter, sv_lattice, sv_mode, sv_scattering, sv_technique,
-    sv_version, sv_voxel_type,
+    sv_tone, sv_version, sv_voxel_type,
 };
 
 /// The version of the library's interface: SV_ABI_VERSION of the header that it was built with. Threads: any.

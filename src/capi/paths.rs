@@ -125,6 +125,31 @@ pub unsafe extern "C" fn sv_renderer_paths_traced(
     unsafe { guard(diagnostic, body) }
 }
 
+/// How noisy that picture was `frames_in_flight` frames before: the root of the sum of the variances of its pixels' luminances
+/// over that of their squares. It halves with four times as many paths, and nothing waits for it. SV_E_STATE while nothing is
+/// known: of the first frames, and of a picture that has begun anew. Threads: one at a time for one renderer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sv_renderer_noise(
+    renderer: sv_renderer,
+    noise: *mut f64,
+    diagnostic: *mut sv_diagnostic,
+) -> sv_status {
+    let body = || {
+        structure::out("the place of the number", noise)?;
+        renderer::with(renderer, |_, inner| {
+            let known = inner.renderer.noise();
+            let known = known.ok_or_else(|| Failure::state(UNKNOWN))?;
+            // SAFETY: not NULL; the caller's promise.
+            unsafe { noise.write(known) };
+            Ok(())
+        })
+    };
+    // SAFETY: the caller's promise.
+    unsafe { guard(diagnostic, body) }
+}
+
+const UNKNOWN: &str = "cannot tell the noise: wanted two frames of paths that are done and one after them, found fewer";
+
 /// The next frame begins with the first path: where what the host has drawn has moved before the volume, and where a frame
 /// that was recorded will not be submitted. Threads: one at a time for one renderer.
 #[unsafe(no_mangle)]

@@ -3,9 +3,10 @@
 use super::paths::{paths, sv_path_tracing};
 use super::status::{Failure, number};
 use super::structure::{self, Versioned};
-use super::words::{SCATTERINGS, word};
+use super::words::{SCATTERINGS, TONES, word};
 use crate::color::ColorSpace;
 use crate::named::Named;
+use crate::picture::Tone;
 use crate::shaders::{MAX_CLIP_PLANES, MAX_LEVELS, MAX_LIGHTS};
 use crate::technique::{
     ClipPlane, Filter, Intermediate, Jitter, Lattice, Level, Light, Mode, PerMode, Settings,
@@ -122,8 +123,10 @@ pub struct sv_settings {
     pub paths: *const sv_path_tracing,
     /// sv_scattering, of composites by rays.
     pub scattering: u32,
-    /// 0.
-    pub reserved: u32,
+    /// sv_tone: what the light of composites and surfaces goes through on its way into the target.
+    pub tone: u32,
+    /// It is multiplied by 2 to the power of this before, -126 to 126 stops.
+    pub exposure: f64,
 }
 
 // SAFETY: as the trait wants it.
@@ -180,6 +183,10 @@ pub(super) unsafe fn settings(
         filter: word("sv_settings.filter", Filter::ALL, c.filter)?,
         lattice: word("sv_settings.lattice", Lattice::ALL, c.lattice)?,
         color_space: word("sv_settings.color_space", ColorSpace::ALL, c.color_space)?,
+        tone: Tone {
+            exposure: c.exposure,
+            curve: word("sv_settings.tone", &TONES, c.tone)?,
+        },
         jitter: Jitter {
             seed: c.jitter_seed,
             frame: c.jitter_frame,

@@ -1,6 +1,7 @@
 //! Numbers of C for words of the library. Structures hold them as `uint32_t`: any number may stand there.
 
 use super::status::Failure;
+use crate::picture::ToneCurve;
 use crate::technique::SingleScattering;
 use crate::volume::VoxelType;
 
@@ -56,6 +57,18 @@ pub enum sv_scattering {
     SV_SCATTERING_MARCH = 1,
     /// Nothing is in the way of lights.
     SV_SCATTERING_OPEN = 2,
+}
+
+/// What is done with light near white and over it.
+#[repr(u32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum sv_tone {
+    /// Light over 1 is cut off by targets that do not hold it.
+    SV_TONE_NONE = 0,
+    /// Colours stay, and bright ones fade to white (Khronos PBR neutral).
+    SV_TONE_NEUTRAL = 1,
+    /// Soft in the dark and in the light (Hable 2010).
+    SV_TONE_FILMIC = 2,
 }
 
 /// How a value between voxel centres is made.
@@ -165,6 +178,8 @@ pub(super) const SCATTERINGS: [Option<SingleScattering>; 3] = [
     Some(SingleScattering::Open),
 ];
 
+pub(super) const TONES: [ToneCurve; 3] = [ToneCurve::None, ToneCurve::Neutral, ToneCurve::Filmic];
+
 /// The word of a number.
 pub(super) fn word<T: Copy>(name: &str, words: &[T], number: u32) -> Result<T, Failure> {
     words.get(number as usize).copied().ok_or_else(|| {
@@ -200,6 +215,7 @@ mod tests {
         use sv_voxel_type::*;
         assert_eq!(VOXEL_TYPES[SV_VOXEL_F64 as usize], VoxelType::F64);
         assert_eq!(VOXEL_TYPES[SV_VOXEL_I16 as usize], VoxelType::I16);
+        assert_eq!(TONES[sv_tone::SV_TONE_FILMIC as usize], ToneCurve::Filmic);
     }
 
     #[test]

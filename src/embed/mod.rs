@@ -21,7 +21,7 @@
 //! What a host has drawn hides the volume behind it ([`RendererDesc::host_depth`]): its depth buffer is read as a texture. Its own
 //! depth a picture gives back by [`Renderer::draw_depth`] and [`Renderer::record_pick`] ([`RendererDesc::gives_depth`], [`RendererDesc::picks`]).
 //!
-//! Path tracing adds up from frame to frame ([`Renderer::paths_traced`]).
+//! Path tracing adds up from frame to frame ([`Renderer::paths_traced`], [`Renderer::noise`]).
 //!
 //! While it is drawn, a volume takes new voxels of a box ([`Volume::stage_update`], [`Volume::record_update`]). Frames,
 //! uploads and updates may be cut into parts that are submitted one by one and given up between two of them:
@@ -43,6 +43,7 @@ mod frame;
 mod function;
 mod geometry;
 mod in_parts;
+mod noise;
 mod parts;
 mod pass;
 mod paths;

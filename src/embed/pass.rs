@@ -1,5 +1,6 @@
 //! The pipelines of a class.
 
+use super::noise::NoisePass;
 use super::renderer_desc::SliceBlending;
 use super::{Error, RendererDesc};
 use crate::gpu::{Blend, Gpu};
@@ -16,6 +17,8 @@ pub(super) struct Pass {
     pub picture: Option<Box<dyn Gather>>,
     /// Outside of it too: the depth of slices.
     pub slice_depth: Option<Box<dyn Gather>>,
+    /// Outside of it, behind paths: how noisy what they have added up to is.
+    pub noise: Option<NoisePass>,
     /// Inside of it: slices that are blended in the host's target.
     pub in_target: Option<Slicer>,
     /// Inside of it: what was gathered outside, to colours.
@@ -49,11 +52,13 @@ impl Pass {
         let picture = || (technique.desc().gather)(&desc);
         let finds_depth = !technique.casts_rays() && class.finds_depth();
         let slice_depth = || depth_of_slices(&desc, mix);
+        let noise = || NoisePass::new(gpu);
         let resolve = || Resolve::of_settings(gpu, settings, Blend::Over, target);
         let depth = || DepthResolve::new(gpu, mode, target);
         Ok(Self {
             picture: (!is_in_target).then(picture).transpose()?,
             slice_depth: finds_depth.then(slice_depth).transpose()?,
+            noise: technique.traces_paths().then(noise).transpose()?,
             in_target: is_in_target.then(slicer).transpose()?,
             resolve: (!is_in_target).then(resolve).transpose()?,
             depth: class.draws_depth().then(depth).transpose()?,

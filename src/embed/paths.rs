@@ -11,7 +11,7 @@ use crate::camera::Camera;
 use crate::gpu::{Buffer, Gpu};
 use crate::shaders::Frame;
 use crate::technique::Settings;
-use crate::technique::pathtrace::{Medium, MediumFields, paths_at_once};
+use crate::technique::pathtrace::{Medium, MediumFields, PathBlocks, paths_at_once};
 use crate::transfer::TransferFunction;
 use std::sync::Arc;
 
@@ -24,17 +24,32 @@ pub(super) struct Traced {
     /// Paths of each pixel, before this frame and with it.
     before: u32,
     paths: u32,
+    /// The frames that have them.
+    blocks: u32,
 }
 
 impl Renderer {
     /// Of how many paths a pixel the picture of the last frame is the mean ([`Technique::Pathtrace`](crate::technique::Technique)).
     /// Each frame adds [`samples_per_frame`](crate::technique::pathtrace::PathTracing::samples_per_frame), of a driver that counts
     /// the turns of loops 4 at most (through functions of gradients 2), until there are
-    /// [`samples`](crate::technique::pathtrace::PathTracing::samples): those after it trace none and show the same. Another camera, function, volume, size or settings, an update of the volume, and
+    /// [`samples`](crate::technique::pathtrace::PathTracing::samples): those after it trace none and show the same. Another camera, function, volume, size or settings (but for their tone), an update of the volume, and
     /// a frame in parts that was given up begin anew, with the same random numbers. What the host has drawn is not
     /// compared: see [`Renderer::restart_paths`].
     pub fn paths_traced(&self) -> u32 {
         self.traced.map_or(0, |traced| traced.paths)
+    }
+
+    /// How noisy that picture was `frames_in_flight` frames before the last one that was recorded: the root of the sum of the
+    /// variances of its pixels' luminances over that of their squares, by how frames differ, as
+    /// [`Traced::noise`](crate::offscreen::Traced) of offscreen pictures. It halves with four times as many paths.
+    ///
+    /// Nothing waits for it: each frame leaves 12 bytes, which are read when the host records with its number again. `None`
+    /// while nothing is known: before that, of a picture with one frame, of a black one, and where
+    /// [`Renderer::paths_traced`] begins anew; where no paths are traced; and where the device has no storage buffer of 8
+    /// bytes a pixel.
+    pub fn noise(&self) -> Option<f64> {
+        self.traced?;
+        self.path_noise.as_ref()?.known()
     }
 
     /// The next frame begins with the first path: where what a host has drawn has moved before the volume, and where a
@@ -51,15 +66,18 @@ impl Renderer {
         }
         let (camera, updates) = (*shot.camera, self.volume.updates.done());
         let goes_on = |traced: &Traced| traced.camera == camera && traced.updates == updates;
-        let before = self.traced.filter(goes_on).map_or(0, |t| t.paths);
+        let then = self.traced.filter(goes_on);
+        let (before, blocks) = then.map_or((0, 0), |t| (t.paths, t.blocks));
         let function = self.function.paths.as_ref().map(|of| &of.function);
         let most = paths_at_once(function, self.gpu.limits().max_loop_turns);
         let left = settings.path.samples.saturating_sub(before);
+        let more = settings.path.samples_per_frame.min(most).min(left);
         Some(Traced {
             camera,
             updates,
             before,
-            paths: before + settings.path.samples_per_frame.min(most).min(left),
+            paths: before + more,
+            blocks: blocks + u32::from(more > 0),
         })
     }
 }
@@ -68,6 +86,19 @@ impl Traced {
     /// Whether the frame begins a picture.
     pub fn is_new(&self) -> bool {
         self.before == 0
+    }
+
+    /// Whether the frame has paths.
+    pub fn adds(&self) -> bool {
+        self.paths > self.before
+    }
+
+    /// What the picture is the mean of: each frame is a block.
+    pub fn path_blocks(&self) -> PathBlocks {
+        PathBlocks {
+            paths: self.paths,
+            blocks: self.blocks,
+        }
     }
 
     /// Tells the parameters of the frame how many paths come behind how many.

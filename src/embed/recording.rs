@@ -1,6 +1,7 @@
 //! Levels A and B: what a renderer records.
 
 use super::frame::{Frame, Recorded};
+use super::paths::Traced;
 use super::{Error, FrameInfo, Renderer};
 use crate::camera::{Camera, DepthConvention, HostDepth};
 use crate::gpu::{Load, Target, TargetClass, Tile, Use, begin_rendering, end_rendering};
@@ -129,6 +130,9 @@ impl Renderer {
             return Err(Error::NotUploaded);
         }
         self.volume.updates.check_whole()?;
+        if let Some(noise) = &mut self.path_noise {
+            noise.read(frame)?;
+        }
         let depth = self.depth_of(shot)?;
         let mut made = std::mem::take(&mut self.spare);
         if let Err(refused) = self.describe(frame, shot, depth, &mut made) {
@@ -401,6 +405,42 @@ impl Renderer {
             // SAFETY: the caller's promises.
             unsafe { bound.record(&mut player, bricks, part)? };
         }
+        if let Some(traced) = made.traced {
+            // SAFETY: as above, behind the paths.
+            unsafe { self.record_noise(cmd, frame, (made, traced), part)? };
+        }
         Ok(())
+    }
+
+    /// Records how noisy the picture of paths is with those of a frame.
+    ///
+    /// # Safety
+    /// As [`Renderer::gather`], after the paths of the part.
+    unsafe fn record_noise(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        frame: usize,
+        (made, traced): (&Recorded, Traced),
+        part: &Part,
+    ) -> Result<(), Error> {
+        let (Some(noise), Some(canvas)) = (&mut self.path_noise, &mut self.mean) else {
+            return Ok(());
+        };
+        if part.is_first && traced.is_new() {
+            noise.forget();
+        }
+        let Some(pass) = self
+            .pass
+            .noise
+            .as_ref()
+            .filter(|_| part.is_last && traced.adds())
+        else {
+            return Ok(());
+        };
+        let gpu = &self.gpu;
+        let mut player = Player { gpu, cmd, canvas };
+        let offset = made.picture[0].offset;
+        // SAFETY: the caller's promises; `prepare` has read what the frame with that number had told.
+        unsafe { noise.record(&mut player, pass, (frame, offset), traced.path_blocks()) }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::frame::{Frame, FrameSize, Given, Recorded};
 use super::function::{self, Function};
+use super::noise::Noise;
 use super::pass::Pass;
 use super::paths::{self, Traced};
 use super::renderer_desc::{READ_DEPTH, what};
@@ -34,6 +35,8 @@ pub struct Renderer {
     /// What frames of paths add up in, and what they have added up to.
     pub(super) mean: Option<Canvas>,
     pub(super) traced: Option<Traced>,
+    /// How noisy that is, where the device has room for it.
+    pub(super) path_noise: Option<Noise>,
     host_depths: Vec<HostDepthImage>,
     pub(super) frames: Vec<Frame>,
     /// What the next recording is told in.
@@ -87,6 +90,7 @@ impl Renderer {
             sky: paths::sky(gpu, &class.settings)?,
             mean: None,
             traced: None,
+            path_noise: None,
             host_depths: Vec::new(),
             frames: Vec::new(),
             spare: Recorded::with_room(2 * most_bricks),
@@ -118,6 +122,13 @@ impl Renderer {
         let gather = self.pass.picture.as_ref().filter(|_| adds_up);
         let desc = self.given(None).canvas(size, None);
         let mean = gather.map(|gather| gather.canvas(&desc)).transpose()?;
+        let path_noise = match (&self.pass.noise, &mean) {
+            (Some(pass), Some(mean)) => {
+                let frames = self.class.frames_in_flight;
+                Noise::new(&self.gpu, pass, &self.ring, mean, frames)?
+            }
+            _ => None,
+        };
         let mut frames = Vec::new();
         for frame in 0..self.class.frames_in_flight as usize {
             let depth = host_depths.get(frame).or(host_depths.first());
@@ -128,6 +139,7 @@ impl Renderer {
             frames.push(Frame::new(&given, size, frames.first())?);
         }
         (self.frames, self.mean, self.traced) = (frames, mean, None);
+        self.path_noise = path_noise;
         self.extent = extent;
         self.host_depths = host_depths.to_vec();
         Ok(())
@@ -152,7 +164,7 @@ impl Renderer {
         self.show(Arc::clone(&self.volume), made)
     }
 
-    /// Other numbers in the settings from the next [`Renderer::record`] on: steps, crops, clip planes, levels, lights.
+    /// Other numbers in the settings from the next [`Renderer::record`] on: steps, crops, clip planes, levels, lights, tone.
     ///
     /// # Errors
     /// [`Error::OtherDescription`] where other pipelines or textures would be needed; nothing has changed then.
@@ -208,7 +220,14 @@ impl Renderer {
             let made = Function::new(&self.gpu, &self.volume, settings, None, emptying)?;
             self.show(Arc::clone(&self.volume), made)?;
         }
-        if let Some(there) = &self.function.paths {
+        let toned = Settings {
+            tone: class.settings.tone,
+            ..self.class.settings.clone()
+        };
+        // A tone is of the mean of paths, and of none of them.
+        if let Some(there) = &self.function.paths
+            && toned != class.settings
+        {
             self.function.paths = there.under(&class.settings, &self.volume);
             self.traced = None;
         }

@@ -3,6 +3,7 @@
 use super::Error;
 use crate::camera::{Camera, HostDepth};
 use crate::gpu::TargetClass;
+use crate::picture::Tone;
 use crate::technique::{self, DepthAccess, Mode, Order, Settings, SkipBy};
 use ash::vk;
 
@@ -180,6 +181,11 @@ impl RendererDesc {
                 is_in_target && settings.preintegrated && self.host_depth,
                 "pre-integrated slices in the target behind what a host has drawn",
                 "its depth may lie inside a slab: take `SliceBlending::Float`",
+            ),
+            (
+                is_in_target && settings.tone != Tone::default(),
+                "tone mapping of slices that are blended in the target",
+                "there are slices, and no picture yet: take `SliceBlending::Float`",
             ),
             (
                 is_in_target && settings.order == Order::FrontToBack,

@@ -97,6 +97,7 @@ impl View<'_> {
         let of_faces = self.settings.of_faces();
         let of_splats = self.of_splats()?;
         let patterns = self.of_patterns();
+        let (tone, tone_gain) = self.settings.of_tone();
         let reach = self.cover_reach();
         let margin = self.cover_margin(&rays, &world_from_voxel) + reach.voxels;
         let (clip_planes, clip_plane_count) = self.clip_planes()?;
@@ -204,6 +205,8 @@ impl View<'_> {
             splat_last: of_splats.splat_last,
             splat_halo: of_splats.splat_halo,
             part_end: of_splats.part_end,
+            tone,
+            tone_gain,
             // What a brick, slices, channels, lights, cells and a host's depth say of themselves, where there are any.
             ..bytemuck::Zeroable::zeroed()
         };

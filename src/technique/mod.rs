@@ -77,6 +77,7 @@ pub mod slices_2d;
 pub mod slices_3d;
 pub mod splat;
 mod stack_axis;
+mod tone;
 
 pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
 #[doc(hidden)]
@@ -280,6 +281,9 @@ pub struct Settings {
     pub empty_space: SkipBy,
     /// In which numbers colours are blended.
     pub color_space: crate::picture::ColorSpace,
+    /// What the light of a composite goes through on its way into a host's target ([`crate::embed::Renderer::draw`]). Other
+    /// pictures do not look at it: [`crate::picture::Picture::apply_tone`].
+    pub tone: crate::picture::Tone,
     /// Voxel space box to keep, min and max; fractions allowed. `None`: all of it.
     pub crop: Option<[glam::DVec3; 2]>,
     /// Half-spaces, of which the intersection is kept. At most [`crate::shaders::MAX_CLIP_PLANES`].
@@ -349,6 +353,7 @@ impl Default for Settings {
             skip: true,
             empty_space: SkipBy::default(),
             color_space: crate::picture::ColorSpace::default(),
+            tone: crate::picture::Tone::default(),
             crop: None,
             clip_planes: Vec::new(),
             cut_faces: None,

@@ -107,12 +107,13 @@ impl Settings {
     ///
     /// # Errors
     /// [`Error::NeedsRays`], [`Error::NeedsRayLattice`], [`Error::NoDepth`], [`Error::NotExact`],
-    /// [`Error::NoDerivative`], [`Error::LevelCount`] and [`Error::OutOfRange`].
+    /// [`Error::NoDerivative`], [`Error::LevelCount`], [`Error::NotFor`] and [`Error::OutOfRange`].
     pub fn check(&self) -> Result<(), Error> {
         self.check_ways()?;
         self.check_gradient_filter()?;
         self.check_light()?;
         self.check_mode()?;
+        self.check_tone()?;
         let is_share = (0.0..=1.0).contains(&self.dim);
         Error::unless(
             is_share,

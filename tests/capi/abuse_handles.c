@@ -108,6 +108,10 @@ static sv_status h_traced(uint64_t x) {
     uint32_t paths = 0;
     return sv_renderer_paths_traced(x, &paths, &diagnostic);
 }
+static sv_status h_noise(uint64_t x) {
+    double noise = 0.0;
+    return sv_renderer_noise(x, &noise, &diagnostic);
+}
 static sv_status h_restart(uint64_t x) { return sv_renderer_restart_paths(x, &diagnostic); }
 static sv_status h_renderer_destroy(uint64_t x) { return sv_renderer_destroy(x, &diagnostic); }
 static sv_status h_submit_of(uint64_t x) {
@@ -225,6 +229,7 @@ static const struct {
     {"sv_renderer_record_pick", h_record_pick, RENDERER, 0},
     {"sv_renderer_pick", h_pick, RENDERER, 0},
     {"sv_renderer_paths_traced", h_traced, RENDERER, 0},
+    {"sv_renderer_noise", h_noise, RENDERER, 0},
     {"sv_renderer_restart_paths", h_restart, RENDERER, 0},
     {"sv_renderer_destroy", h_renderer_destroy, RENDERER, 0},
     {"sv_submitter_submit, its renderer", h_submit_of, RENDERER, 0},

@@ -43,6 +43,13 @@ static void settings(void) {
     WITH(sv_settings, start, level_count, 1, SV_E_ARGUMENT);
     WITH(sv_settings, start, light_count, 3, SV_E_ARGUMENT);
     WITH(sv_settings, start, mode, SV_MODE_ISO, SV_E_LIMIT);
+    WITH(sv_settings, start, tone, 3, SV_E_ARGUMENT);
+    WITH(sv_settings, start, exposure, 127.0, SV_E_ARGUMENT);
+    WITH(sv_settings, start, exposure, NAN, SV_E_ARGUMENT);
+    sv_settings toned = start;
+    toned.tone = SV_TONE_NEUTRAL;
+    WITH(sv_settings, toned, mode, SV_MODE_MIP, SV_E_UNSUPPORTED);
+    WITH(sv_settings, toned, color_space, SV_COLOR_SPACE_DISPLAY, SV_E_UNSUPPORTED);
     WITH(sv_settings, start, depth_cue, 0.5, SV_E_UNSUPPORTED);
     WITH(sv_settings, start, depth_cue, 7.0, SV_OK);
     WITH(sv_settings, start, depth_cue, nan, SV_OK);

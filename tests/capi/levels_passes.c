@@ -138,6 +138,27 @@ static void of_a_family(const uint8_t *wanted) {
     CHECK(sv_renderer_destroy(renderer, &diagnostic));
 }
 
+/* The host has drawn no green: that of the picture alone is there. */
+static void of_tone(const uint8_t *plain) {
+    static uint8_t texels[BYTES], curved[BYTES];
+    sv_settings settings = {.struct_size = sizeof settings};
+    sv_renderer renderer = make_renderer(&settings, 0);
+    draw_a(renderer, NULL, texels);
+    expect(!memcmp(texels, plain, BYTES), "a tone of zeros is none");
+    settings.exposure = -1.0;
+    CHECK(sv_renderer_set_settings(renderer, &settings, &diagnostic));
+    draw_a(renderer, NULL, texels);
+    unsigned wrong = 0;
+    /* Both are rounded to half a code. */
+    for (int k = 1; k < BYTES; k += 4) wrong += abs(2 * texels[k] - plain[k]) > 2;
+    expect(!wrong && drawn_pixels(texels) > 20, "a stop less is half of the light");
+    settings.tone = SV_TONE_FILMIC;
+    CHECK(sv_renderer_set_settings(renderer, &settings, &diagnostic));
+    draw_a(renderer, NULL, curved);
+    expect(memcmp(texels, curved, BYTES) != 0, "a curve bends it");
+    CHECK(sv_renderer_destroy(renderer, &diagnostic));
+}
+
 static uint32_t traced(sv_renderer renderer) {
     uint32_t paths = 0;
     CHECK(sv_renderer_paths_traced(renderer, &paths, &diagnostic));
@@ -157,8 +178,12 @@ static void of_paths(void) {
         draw_a(renderer, NULL, more);
     }
     expect(traced(renderer) == 5, "there are no more paths than were asked for");
+    double noise = 0.0;
+    CHECK(sv_renderer_noise(renderer, &noise, &diagnostic));
+    expect(noise > 0.01 && noise < 2.0, "paths tell how noisy their picture is");
     expect(memcmp(first, more, BYTES) != 0, "more paths show another picture");
     CHECK(sv_renderer_restart_paths(renderer, &diagnostic));
+    expect(sv_renderer_noise(renderer, &noise, &diagnostic) == SV_E_STATE, "nothing is known of what begins anew");
     draw_a(renderer, NULL, more);
     expect(traced(renderer) == 2 && !memcmp(first, more, BYTES), "the first paths are the same again");
     CHECK(sv_renderer_destroy(renderer, &diagnostic));
@@ -177,5 +202,6 @@ void test_passes(void) {
     in_a_render_pass(wanted);
     of_several_samples(wanted);
     of_a_family(wanted);
+    of_tone(wanted);
     of_paths();
 }

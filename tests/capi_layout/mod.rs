@@ -49,7 +49,7 @@ pub fn asserts() -> Vec<String> {
         sv_clip_plane { normal, offset }
         sv_isosurface { value, srgb, opacity }
         sv_light { towards, srgb }
-        sv_settings { struct_size, next, technique, mode, filter, lattice, color_space, is_preintegrated, disable_space_skipping, has_exact_maximum, samples_per_voxel, termination, crop_min, crop_max, clip_planes, clip_plane_count, levels, level_count, is_lit, has_lmip_threshold, ambient, diffuse, specular, shininess, lights, light_count, unit_values, lmip_threshold, mida_gamma, attenuation, depth_cue, jitter_seed, jitter_frame, rays_per_voxel, paths, scattering, reserved }
+        sv_settings { struct_size, next, technique, mode, filter, lattice, color_space, is_preintegrated, disable_space_skipping, has_exact_maximum, samples_per_voxel, termination, crop_min, crop_max, clip_planes, clip_plane_count, levels, level_count, is_lit, has_lmip_threshold, ambient, diffuse, specular, shininess, lights, light_count, unit_values, lmip_threshold, mida_gamma, attenuation, depth_cue, jitter_seed, jitter_frame, rays_per_voxel, paths, scattering, tone, exposure }
         sv_path_tracing { struct_size, next, samples, samples_per_frame, seed, bounces, is_unscattered, is_rayleigh, density, albedo, mean_cosine, second_mean_cosine, second_part, light_size_degrees, sky, surface, f0, roughness }
         sv_target_class { struct_size, next, color_format, samples, depth_format, has_stencil, is_depth_reversed, subpass, render_pass }
         sv_depth_image { view, layout, width, height, reserved }
@@ -71,6 +71,7 @@ pub fn asserts() -> Vec<String> {
             "SV_TECHNIQUE_SPLAT",
             sv_technique::SV_TECHNIQUE_SPLAT as i32,
         ),
+        ("SV_TONE_FILMIC", sv_tone::SV_TONE_FILMIC as i32),
         ("SV_CAUSE_CROWDED", sv_cause::SV_CAUSE_CROWDED as i32),
         (
             "SV_DIRECTION_BACKWARD",

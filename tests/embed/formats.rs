@@ -17,7 +17,7 @@ const TECHNIQUES: [Technique; 3] = [Technique::Raycast, Technique::Slices3d, Tec
 
 /// What the numbers of a target are, in which the offscreen picture is told.
 #[derive(Clone, Copy, Debug)]
-enum Stored {
+pub enum Stored {
     /// Codes of linear light or of what is shown, as the settings say: 255 for 8 bits, 1023 for 10 with 3 of alpha.
     Codes([f64; 4]),
     /// Codes of 8 bits whose colours the device encodes.
@@ -74,7 +74,7 @@ const TARGETS: [(vk::Format, ColorSpace, Stored); 8] = [
 impl Stored {
     /// What a channel of the target holds for `wanted`, and how far it may be off. Offscreen and embedded pictures are
     /// gathered in the same format on one device, so that the gather itself adds nothing.
-    fn of(self, channel: usize, wanted: f64) -> (f64, f64) {
+    pub fn of(self, channel: usize, wanted: f64) -> (f64, f64) {
         match self {
             Self::Codes(most) => (most[channel] * wanted.clamp(0.0, 1.0), 1.0),
             Self::SrgbCodes if channel < 3 => (255.0 * encode_srgb(wanted.clamp(0.0, 1.0)), 1.0),
@@ -100,7 +100,7 @@ fn stage(technique: Technique, mode: Mode, color_space: ColorSpace) -> Stage {
     stage
 }
 
-fn renderer(
+pub fn renderer(
     host: &Host,
     stage: &Stage,
     format: vk::Format,
@@ -131,7 +131,7 @@ fn shot(stage: &Stage, frame: u32) -> FrameInfo<'_> {
 }
 
 /// The picture at one of the levels.
-fn drawn(host: &Host, renderer: &mut Renderer, stage: &Stage, image: &HostImage, level: char) {
+pub fn drawn(host: &Host, renderer: &mut Renderer, stage: &Stage, image: &HostImage, level: char) {
     let load = Load::Clear([0.0; 4]);
     match level {
         // SAFETY: recorded in order; all of it lives until `run` has waited, here and below.

@@ -10,12 +10,12 @@ use stratavox::gpu::Load;
 use stratavox::technique::pathtrace::{Lens, PathTracing, Phase, SkyPicture};
 use stratavox::technique::{ClipPlane, Light, Settings, Technique};
 
-const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+pub const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const IN_FLIGHT: u32 = 2;
 /// f32 rounds the sums of one frame and the mean behind each of them: numbers up to some 10, a few times.
 const ROUNDED: f64 = 1e-5;
 
-fn path() -> PathTracing {
+pub fn path() -> PathTracing {
     PathTracing {
         samples: 6,
         samples_per_frame: 2,
@@ -28,7 +28,7 @@ fn path() -> PathTracing {
     }
 }
 
-fn stage(path: PathTracing) -> Stage {
+pub fn stage(path: PathTracing) -> Stage {
     Stage::new(Settings {
         technique: Technique::Pathtrace,
         path,
@@ -55,7 +55,7 @@ fn volume(host: &Host, stage: &Stage) -> Arc<Volume> {
     Arc::new(volume)
 }
 
-fn renderer(host: &Host, stage: &Stage) -> Renderer {
+pub fn renderer(host: &Host, stage: &Stage) -> Renderer {
     let function = Some(&stage.transfer);
     let volume = volume(host, stage);
     Renderer::new(
@@ -70,7 +70,7 @@ fn renderer(host: &Host, stage: &Stage) -> Renderer {
 }
 
 /// So many frames, two of them submitted at once.
-fn frames(host: &Host, renderer: &mut Renderer, camera: &Camera, count: u32) -> Vec<[f64; 4]> {
+pub fn frames(host: &Host, renderer: &mut Renderer, camera: &Camera, count: u32) -> Vec<[f64; 4]> {
     let image = HostImage::new(host, FORMAT, renderer.extent());
     let load = Load::Clear([0.0; 4]);
     let numbers: Vec<_> = (0..count).collect();

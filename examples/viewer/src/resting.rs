@@ -76,6 +76,12 @@ impl Resting {
         look.rests().then_some([self.paths, PATHS])
     }
 
+    /// How noisy the picture is, once that is known.
+    pub fn noise(&self) -> Option<f64> {
+        let shown = self.renderer.as_ref().filter(|_| self.paths > 0);
+        shown.and_then(Renderer::noise)
+    }
+
     /// Whether more of them are to come.
     pub fn goes_on(&self, look: &Look) -> bool {
         let paths = self.paths(look);

@@ -65,6 +65,8 @@ pub struct Status {
     pub extent: [u32; 2],
     /// Paths a pixel, of how many, where light scatters.
     pub paths: Option<[u32; 2]>,
+    /// How noisy they are, once that is known.
+    pub noise: Option<f64>,
     pub present: String,
     pub pipelines: u32,
     pub device_bytes: u64,

@@ -249,6 +249,8 @@ impl SamplingFlags {
             skip: self.empty_space.unwrap_or_default().skips(),
             empty_space: self.empty_space.unwrap_or_default().skip_by(),
             color_space,
+            // Of a file's pixels: `PictureFlags::tone`.
+            tone: Default::default(),
             crop: self.crop.map(crop_box).transpose()?,
             clip_planes: self.clip_planes()?,
             cut_faces: self.cut_faces.map(CutFacesWord::cut_faces),

@@ -1,18 +1,17 @@
 //! What paths have brought so far: sums that another run can go on with.
 //!
 //! ```text
-//! mean     = (sum of one half of the blocks + sum of the other) / N
-//! noise    = sqrt(sum over pixels of the variance of their means) / sqrt(sum of their squares)      of luminance
-//! variance = (S2 - S1^2 / N) / (N (B - 1))
+//! mean      = (sum of one half of the blocks + sum of the other) / N
+//! deviation = S2 - S1^2 / N
 //! ```
 //!
-//! B blocks have N paths a pixel together; S1 is the sum of n y and S2 that of n y^2 over blocks of n paths whose mean
-//! luminance is y. Sums are f64, and those of a picture that is gone on with are those of one that never stopped.
+//! Blocks have N paths a pixel together; S1 is the sum of n y and S2 that of n y^2 over blocks of n paths whose mean
+//! luminance is y, which tell the noise (`technique/pathtrace/noise.rs`). Sums are f64, and those of a picture that is gone on with are those of one that never stopped.
 
 use super::path_layers::PathImages;
 use crate::offscreen::Error;
 use crate::picture::{Layer, LayerKind};
-use crate::technique::pathtrace::Guide;
+use crate::technique::pathtrace::{Guide, PathBlocks, luminance};
 
 /// Sums of the paths of a picture.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -170,34 +169,34 @@ impl PathSums {
 
     /// The standard error of luminance, as a part of what the picture shows; `None`: one block does not tell.
     pub(super) fn noise(&self) -> Option<f64> {
-        if self.blocks < 2 {
-            return None;
-        }
         let paths = f64::from(self.paths());
-        let [mut variance, mut squares] = [0.0; 2];
+        let [mut deviations, mut squares] = [0.0; 2];
         for of_pixel in &self.luminance {
-            variance += self.variance(of_pixel);
+            deviations += self.deviation(of_pixel).max(0.0);
             squares += (of_pixel[0] / paths).powi(2);
         }
-        (squares > 0.0).then(|| (variance / squares).sqrt())
+        self.path_blocks().noise(deviations, squares)
     }
 
-    /// Of the mean luminance of a pixel; NaN where one block is all.
-    fn variance(&self, &[first, second]: &[f64; 2]) -> f64 {
-        let (paths, blocks) = (f64::from(self.paths()), f64::from(self.blocks));
-        let variance = (second - first * first / paths) / (paths * (blocks - 1.0));
-        match self.blocks > 1 {
-            true => variance.max(0.0),
-            false => f64::NAN,
+    fn path_blocks(&self) -> PathBlocks {
+        PathBlocks {
+            paths: self.paths(),
+            blocks: self.blocks,
         }
+    }
+
+    /// Of the luminance of a pixel's blocks.
+    fn deviation(&self, &[first, second]: &[f64; 2]) -> f64 {
+        second - first * first / f64::from(self.paths())
     }
 
     /// A layer of a kind that [`Self::want`] was told of.
     pub(super) fn layer(&self, kind: LayerKind) -> Layer {
         let values = match kind {
             LayerKind::Noise => {
-                let deviation = |sums| self.variance(sums).sqrt() as f32;
-                self.luminance.iter().map(deviation).collect()
+                let variance = |sums| self.path_blocks().variance(self.deviation(sums));
+                let error = |sums| variance(sums).sqrt() as f32;
+                self.luminance.iter().map(error).collect()
             }
             // The part of paths that have met nothing.
             LayerKind::Transmittance => self.mean().iter().map(|[.., alpha]| 1.0 - alpha).collect(),
@@ -213,11 +212,6 @@ fn counts_of(head: [u8; PathSums::HEAD_BYTES]) -> [u32; 4] {
         let bytes = head[4 * i..][..4].try_into();
         u32::from_le_bytes(bytes.expect("four bytes"))
     })
-}
-
-/// Of linear light (ITU-R BT.709).
-fn luminance([r, g, b, _]: [f64; 4]) -> f64 {
-    0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
 #[cfg(test)]

@@ -14,6 +14,7 @@ mod lamp;
 mod layers;
 mod levels;
 mod majorants;
+mod noise;
 mod phase;
 mod random;
 #[doc(hidden)]
@@ -29,6 +30,7 @@ pub(crate) use elementary::turn_of;
 pub(crate) use guides::{GUIDE_IMAGES, Guide, guide_of};
 pub use lamp::{Lamp, LampShape};
 pub(crate) use layers::{PATH_IMAGES, PathMeans, images_of, numbers_of};
+pub(crate) use noise::{PathBlocks, luminance};
 pub(crate) use phase::phase_value;
 pub use sky::{SkyError, SkyPicture};
 pub(crate) use sobol::{half_of_path, left_of_half};

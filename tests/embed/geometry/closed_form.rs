@@ -7,7 +7,7 @@
 //! ```
 
 use super::drawn;
-use crate::driver_faults::{CONE_FAULTS, faulty, tell, told};
+use crate::driver_faults::{CONE_FAULTS, alone, faulty, tell, told};
 use crate::embed_shared::Host;
 use glam::dcamera::rh::{proj::vulkan, view::look_at_mat4};
 use glam::{DVec3, dvec3};
@@ -44,9 +44,9 @@ fn far_cones_have_the_outline_depth_and_light_of_their_closed_form() {
     assert_eq!(off(&Host::new()), Ok(()));
 }
 
-/// One fault at a time: no other test of this program draws through `faulty`.
 #[test]
 fn each_fault_of_cones_is_seen() {
+    let _alone = alone();
     for (what, fault) in CONE_FAULTS {
         tell(Some(*fault));
         // SAFETY: its functions are Vulkan's, but for shaders that are others.

@@ -239,7 +239,11 @@ fn status(ui: &mut Ui, view: &View) {
         .map_or(String::new(), |ms| format!(" in {ms:.1} ms"));
     ui.weak(format!("{width} × {height}{took}, {}", status.present));
     if let Some([traced, all]) = status.paths {
-        ui.weak(format!("{traced} of {all} paths a pixel"));
+        let noise = status
+            .noise
+            .map(|noise| format!(", {:.1} % noise", 100.0 * noise));
+        let noise = noise.unwrap_or_default();
+        ui.weak(format!("{traced} of {all} paths a pixel{noise}"));
     }
     ui.weak(format!("{megabytes:.0} MB, {} pipelines", status.pipelines));
     ui.label(RichText::new("H shows the keys").color(ACCENT));

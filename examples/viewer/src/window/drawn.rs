@@ -97,6 +97,7 @@ impl Window {
             }
         }
         self.view.status.paths = drawing.resting.paths(&now.look);
+        self.view.status.noise = drawing.resting.noise();
         if rests {
             return Ok(());
         }
