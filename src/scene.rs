@@ -7,9 +7,9 @@ pub(crate) use labels_over::LabelsOver;
 use crate::camera::Camera;
 use crate::points::{PointField, Points};
 use crate::shaders::{Frame, MAX_CHANNELS};
-use crate::technique::mixture::opacities_have_colors;
 use crate::technique::pathtrace::{Medium, most_extinction};
 use crate::technique::splat::points::reference_length;
+use crate::technique::{self, mixture::opacities_have_colors};
 use crate::technique::{
     CutFaces, Error, GradientStorage, InPixel, Mode, Role, SampleInputs, Settings, View,
 };
@@ -284,9 +284,12 @@ impl<'a> Scene<'a> {
     }
 
     /// Tells the parameters what paths want to know of the volume and its function.
-    pub(crate) fn tell_paths(&self, frame: &mut Frame) {
+    ///
+    /// # Errors
+    /// Where matter is too dense for paths.
+    pub(crate) fn tell_paths(&self, frame: &mut Frame) -> Result<(), technique::Error> {
         let (true, Some(function)) = (self.settings.technique.traces_paths(), self.transfer) else {
-            return;
+            return Ok(());
         };
         let medium = Medium {
             function,
@@ -301,7 +304,8 @@ impl<'a> Scene<'a> {
                 most.sum()
             }),
         };
-        self.settings.path.fields_of(&medium).tell(frame);
+        self.settings.path.fields_of(&medium)?.tell(frame);
+        Ok(())
     }
 
     /// Between which values samples look alike, where steps adapt to that.

@@ -37,6 +37,12 @@ pub fn command() -> Command {
 }
 
 fn by_use(arg: Arg) -> Arg {
+    // A number below 0 is one out of range, and no flag that nobody knows.
+    let takes_word = arg.get_action().takes_values() && !arg.is_positional();
+    let arg = match takes_word {
+        true => arg.allow_negative_numbers(true),
+        false => arg,
+    };
     let place = COMMON.iter().position(|name| arg.get_id() == *name);
     match place {
         Some(place) => arg.help_heading(None::<&str>).display_order(place),

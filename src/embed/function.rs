@@ -87,7 +87,7 @@ impl Function {
                 second: gradient_transfer.is_some_and(GradientTransfer::needs_second),
                 labels: 0,
             },
-            paths: OfPaths::new(function, settings, volume),
+            paths: OfPaths::new(function, settings, volume)?,
             uploaded: Uploaded::default(),
         })
     }

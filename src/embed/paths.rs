@@ -10,8 +10,8 @@ use super::{Error, FrameInfo, Renderer};
 use crate::camera::Camera;
 use crate::gpu::{Buffer, Gpu};
 use crate::shaders::Frame;
-use crate::technique::Settings;
 use crate::technique::pathtrace::{Medium, MediumFields, PathBlocks, paths_at_once};
+use crate::technique::{self, Settings};
 use crate::transfer::TransferFunction;
 use std::sync::Arc;
 
@@ -118,12 +118,17 @@ pub(super) struct OfPaths {
 
 impl OfPaths {
     /// Where paths are traced through such a volume.
+    ///
+    /// # Errors
+    /// Where matter is too dense for paths.
     pub fn new(
         function: Option<&TransferFunction>,
         settings: &Settings,
         volume: &super::Volume,
-    ) -> Option<Box<Self>> {
-        let function = function.filter(|_| settings.technique.traces_paths())?;
+    ) -> Result<Option<Box<Self>>, technique::Error> {
+        let Some(function) = function.filter(|_| settings.technique.traces_paths()) else {
+            return Ok(None);
+        };
         let smallest_spacing = volume.grid().smallest_spacing();
         let fields = settings.path.fields_of(&Medium {
             function,
@@ -133,9 +138,9 @@ impl OfPaths {
             value_range: volume.value_range(),
             smallest_spacing,
             beside: None,
-        });
+        })?;
         let function = function.clone();
-        Some(Box::new(Self { function, fields }))
+        Ok(Some(Box::new(Self { function, fields })))
     }
 
     /// The same under other settings.

@@ -111,6 +111,8 @@ fn what_paths_do_not_go_with_is_refused_by_name() {
         ("--albedo 2", "light would grow"),
         ("--environment=-1,0,0", "sky"),
         ("--density-scale 0", "--density-scale"),
+        ("--density-scale -1", "--density-scale"),
+        ("--density-scale 1e6", "collisions in a macro cell"),
         ("--light-size 120", "90 degrees"),
         ("--point-light 1,2", "X,Y,Z"),
         ("--point-light 1,2,3,1,1,1,0", "noise never ends"),

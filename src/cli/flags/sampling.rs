@@ -186,7 +186,8 @@ const WARP: &str = "--technique shear-warp is for --mode composite, mip, minip, 
                     --aa-uneven, --adaptive-steps and --cut-faces";
 /// What splats go with.
 const SPLATS: &str = "--technique splat is for --mode composite, mip, minip, average and xray, with a kernel (--splat-std) and \
-                      sheets (--sheets) of its own: leave out the other flag, or draw a volume by --technique raycast";
+                      sheets (--sheets) of its own: leave out the other flag, or draw a volume by --technique raycast, points by \
+                      --points-as field or grid";
 /// What rays through points go with.
 const FIELD: &str = "points are cast by rays, in --mode composite, mip, minip, average and xray; --points-as grid makes a volume of \
                      them";

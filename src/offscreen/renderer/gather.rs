@@ -86,7 +86,7 @@ impl Renderer<'_> {
             .and_then(|behind| behind.ends(scene.settings));
         for recording in &mut recordings {
             recording.skip(skip);
-            scene.tell_paths(&mut recording.frame);
+            scene.tell_paths(&mut recording.frame)?;
             if leaves_path_layers {
                 // Of tiles without matter too.
                 recording.frame.draws_all_tiles = 1;

@@ -46,6 +46,11 @@ impl Majorants {
             rows: std::array::from_fn(|v| std::array::from_fn(|k| rows[4 * v + k])),
         }
     }
+
+    /// That of all bins: the one entry of the last row.
+    pub fn of_all(&self) -> f32 {
+        self.rows[(MAJORANT_BINS * (MAJORANT_ROWS - 1) / 4) as usize][0]
+    }
 }
 
 /// An amount over values that grows with what stands at points, and is what it makes of that.

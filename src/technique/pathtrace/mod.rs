@@ -41,7 +41,7 @@ use super::{Error, Light, SampleInputs, View};
 use crate::color::decode_srgb;
 use crate::gpu;
 use crate::resident::TextureLayout;
-use crate::shaders::{Frame, FrameFields, MAJORANT_BINS, MAJORANT_ROWS, MAX_LIGHTS, TURNS_OF_WAY};
+use crate::shaders::{CELL_VOXELS, Frame, FrameFields, MAX_LIGHTS, TURNS_OF_WAY};
 pub use crate::transfer::Phase;
 use crate::transfer::{Absorption, GradientTransfer, TransferFunction};
 use glam::DVec3;
@@ -251,6 +251,11 @@ pub(crate) fn most_extinction(function: &TransferFunction, absorption: Absorptio
 /// Light that matter sends out is found at tentative collisions: no farther apart than this on average, in voxels.
 const EMISSION_SPACINGS: f64 = 8.0;
 
+/// Tentative collisions on a side of a macro cell, in the mean, where it holds the densest matter: 128 in a voxel, through which
+/// no light comes. What has more of them takes very long where dense matter ends within a cell, and longer than drivers let a loop last
+/// (some 3000 turns of a path, [`MOST_TURNS`]).
+const MOST_IN_CELL: f64 = 1024.0;
+
 /// f32 rounds a table's entries and the products with them.
 const MAJORANT_SLACK: f64 = 1.0 + 1e-5;
 
@@ -266,7 +271,10 @@ pub(crate) struct MediumFields {
 
 impl PathTracing {
     /// What parameters do not know without the volume.
-    pub(crate) fn fields_of(&self, medium: &Medium) -> MediumFields {
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] where matter is so dense that ways take too long ([`MOST_IN_CELL`]).
+    pub(crate) fn fields_of(&self, medium: &Medium) -> Result<MediumFields, Error> {
         let Medium {
             function,
             absorption,
@@ -287,6 +295,10 @@ impl PathTracing {
                 false => most,
             }
         });
+        let cell = f64::from(CELL_VOXELS) * smallest_spacing;
+        let in_cell = f64::from(majorants.of_all()) * cell;
+        let name = "tentative collisions in a macro cell";
+        Error::unless(in_cell <= MOST_IN_CELL, name, "at most 1024", in_cell)?;
         // A search halves the points of colour and of opacity.
         let medium = function.medium.iter();
         let medium = medium.map(|m| m.extinction.len() + m.albedo.len() + m.emission.len());
@@ -324,7 +336,7 @@ impl PathTracing {
             (has_holes && self.surface > 0.0, 6 * TURNS_OF_MASK),
         ]);
         let range = high - low;
-        MediumFields {
+        Ok(MediumFields {
             majorants,
             turns: [event, collision],
             paths_of_loop: paths_of_loop(Some(function)),
@@ -332,7 +344,7 @@ impl PathTracing {
                 true => (self.surface * smallest_spacing / range) as f32,
                 false => 0.0,
             },
-        }
+        })
     }
 }
 
@@ -343,8 +355,7 @@ impl MediumFields {
         frame.path_bin_first = majorants.first;
         frame.path_bin_scale = majorants.scale;
         frame.path_majorants = majorants.rows;
-        // The last row has one entry: of all bins.
-        frame.path_majorant = majorants.rows[(MAJORANT_BINS * (MAJORANT_ROWS - 1) / 4) as usize][0];
+        frame.path_majorant = majorants.of_all();
         // Clip planes are gone over where a way begins: from the eye, to a light, from a collision.
         let [event, collision] = self.turns;
         let ways = 3 * (frame.clip_plane_count + 1);
