@@ -14,10 +14,10 @@ use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunct
 use stratavox::volume::{Rescale, Volume, Voxels};
 
 const FLOATS: [PayloadFloats; 2] = [PayloadFloats::Half, PayloadFloats::Single];
-const SPACES: [ColorSpace; 2] = [ColorSpace::Linear, ColorSpace::Display];
+pub const SPACES: [ColorSpace; 2] = [ColorSpace::Linear, ColorSpace::Display];
 
 /// Values from 0 to 1; nothing below `first`, and everything where that is below 0.
-fn function(first: f64, interpolation: Interpolation) -> TransferFunction {
+pub fn function(first: f64, interpolation: Interpolation) -> TransferFunction {
     let opacity = [(first, 0.0), (first + 0.2, 0.3), (1.0, 0.9)];
     let color = [
         (0.0, [1.0, 0.2, 0.1]),
@@ -37,7 +37,7 @@ fn function(first: f64, interpolation: Interpolation) -> TransferFunction {
 }
 
 /// Numbers from 0 to 1 as each type of 8 and 16 bits stores them.
-fn volumes(dims: [u32; 3], values: &[f64], validity: Option<&[u8]>) -> Vec<Volume> {
+pub fn volumes(dims: [u32; 3], values: &[f64], validity: Option<&[u8]>) -> Vec<Volume> {
     let made = |voxels, slope: f64, intercept| {
         let rescale = Rescale { slope, intercept };
         let made = Volume::from_voxels(dims, DAffine3::IDENTITY, voxels, rescale, None);
