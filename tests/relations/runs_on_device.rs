@@ -228,6 +228,16 @@ fn what_the_device_cannot_make_is_left_to_the_host() {
     ] {
         assert!(builder(&mut device_with(caps), &volume).is_none());
     }
+    // As many workgroups as there are blocks, of 64 words each: two of 128 words.
+    let two_groups = Caps {
+        max_workgroup_count: [2, 1, 1],
+        ..Caps::UNLIMITED
+    };
+    let mut lean = device_with(two_groups);
+    let there = builder(&mut lean, &volume).expect("two workgroups");
+    let made = there.build(&mut lean, &vec![[0.5; 4]; 65_536], PayloadFloats::Half);
+    let made = made.expect("two workgroups").expect("small numbers");
+    assert_eq!(made.size().full, 2560);
     // Numbers that 16 bits do not hold, of a code that a voxel has and of one that none has.
     let there = builder(&mut whole, &volume).expect("codes");
     let mut materials = vec![[0.0; 4]; 65_536];

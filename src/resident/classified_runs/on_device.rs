@@ -165,7 +165,7 @@ impl RunBuilder {
             ("run_payloads", Resource::Storage(&made)),
         ];
         let bindings = Bindings::new(&gpu, self.payload.layout(), &given)?;
-        let groups = self.payload.groups([texel_count, 1, 1])?;
+        let groups = [block_count, 1, 1];
         let height = of_payload.extent()[1];
         for part in of_payload.parts(rows) {
             let [width, part_height, _] = part.extent;
@@ -247,7 +247,7 @@ impl RunBuilder {
             ("run_classes", Resource::Storage(classes)),
         ];
         let of_words = Bindings::new(&gpu, self.words.layout(), &given)?;
-        let groups = self.words.groups([parameters.texel_count, 1, 1])?;
+        let groups = [parameters.block_count, 1, 1];
         let offset = [self.ring.offset(0)?];
         device.run(|cmd| {
             // SAFETY: recorded outside rendering; all of it lives until `run` has waited; the host has written the classes before,
