@@ -104,8 +104,7 @@ impl<'v> Renderer<'v> {
             streaming,
             ..
         } = self;
-        drop((resident, transfer, light, skipped, streaming));
-        drop(preclassified);
+        drop((resident, preclassified, transfer, light, skipped, streaming));
         // The next volume finds the memory of this one free.
         device.tidy();
         let tools = Tools {
