@@ -18,7 +18,7 @@ use stratavox::scene::{Beside, Scene};
 use stratavox::technique::preclassified::preclassified;
 use stratavox::technique::{self, AmbientOcclusion, Filter, Mode, Settings, Shading, Technique};
 use stratavox::transfer::{GradientTransfer, Interpolation, TransferFunction};
-use stratavox::volume::{Rescale, Volume, Voxels};
+use stratavox::volume::{Volume, Voxels};
 
 /// Noise, and an empty half.
 fn values(numbers: &mut Numbers, dims: [u32; 3]) -> Vec<f64> {
@@ -236,7 +236,7 @@ fn a_renderer_forgets_what_another_function_made() {
 #[test]
 fn without_room_for_codes_the_host_makes_runs() {
     let mut numbers = Numbers(5);
-    let dims = [40, 16, 16];
+    let dims = [64, 32, 32];
     let values = values(&mut numbers, dims);
     let volume = &volumes(dims, &values, None)[2];
     let function = function(0.3, Interpolation::Linear);
@@ -252,7 +252,7 @@ fn without_room_for_codes_the_host_makes_runs() {
         (bits(&picture), renderer.runs(), renderer.runs_made_by())
     };
     let small = Caps {
-        max_storage_buffer_range: 20_000,
+        max_storage_buffer_range: 100_000,
         ..Caps::UNLIMITED
     };
     let (whole, size, by) = drawn(device());
