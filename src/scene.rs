@@ -8,6 +8,7 @@ use crate::camera::Camera;
 use crate::points::{PointField, Points};
 use crate::shaders::{Frame, MAX_CHANNELS};
 use crate::technique::pathtrace::{Medium, most_extinction};
+use crate::technique::preclassified::Law;
 use crate::technique::splat::points::reference_length;
 use crate::technique::{self, mixture::opacities_have_colors};
 use crate::technique::{
@@ -45,6 +46,10 @@ pub enum Beside<'a> {
     /// ([`crate::technique::preclassified::preclassified`] makes them). Of the transfer function only the reference
     /// length is used, which must be that of the depths. Composite only.
     Classified(&'a [&'a Volume]),
+    /// It is alone, and its voxels are classified by the transfer function before they are interpolated
+    /// ([`mod@crate::technique::preclassified`]): the picture is that of [`Beside::Classified`] with the volumes made so. Composite
+    /// only, and a function of values alone.
+    Preclassified,
     /// Scattered points, which are drawn in place of the volume: that is [`Points::binned`] of them, and says where they are
     /// and which values they have. By splatting, with [`Splat::of_points`](crate::technique::splat::Splat::of_points), or by rays
     /// through [`Settings::field`]: then the volume is [`Points::binned_within`] of its radius.
@@ -55,7 +60,7 @@ impl<'a> Beside<'a> {
     /// The volumes, in their order.
     pub fn volumes(&self) -> Vec<&'a Volume> {
         match *self {
-            Beside::Nothing | Beside::Points(_) => Vec::new(),
+            Beside::Nothing | Beside::Preclassified | Beside::Points(_) => Vec::new(),
             Beside::Channels(channels) => channels.iter().map(|c| c.volume).collect(),
             Beside::Colors(volumes) | Beside::Classified(volumes) => volumes.to_vec(),
         }
@@ -85,7 +90,9 @@ impl<'a> Scene<'a> {
     pub fn mix(&self) -> SampleInputs {
         match self.beside {
             Beside::Channels(channels) if !channels.is_empty() => SampleInputs::Channels,
-            Beside::Colors(_) | Beside::Classified(_) => SampleInputs::Colors,
+            Beside::Colors(_) | Beside::Classified(_) | Beside::Preclassified => {
+                SampleInputs::Colors
+            }
             Beside::Nothing | Beside::Channels(_) | Beside::Points(_) => {
                 SampleInputs::of_one(self.transfer)
             }
@@ -109,13 +116,14 @@ impl<'a> Scene<'a> {
         [self.volume].into_iter().chain(beside).collect()
     }
 
-    /// What each volume is.
+    /// What each volume is; of voxels that are classified each of the four that are made of them.
     pub fn roles(&self) -> Vec<Role> {
         let beside = match self.beside {
             Beside::Channels(channels) => channels.iter().map(|c| c.role).collect(),
             Beside::Nothing | Beside::Points(_) => Vec::new(),
             Beside::Colors(volumes) => vec![Role::Numbers; volumes.len()],
             Beside::Classified(volumes) => vec![Role::Material; volumes.len()],
+            Beside::Preclassified => vec![Role::Material; 3],
         };
         [Role::Numbers].into_iter().chain(beside).collect()
     }
@@ -124,11 +132,35 @@ impl<'a> Scene<'a> {
     pub fn transfers(&self) -> Vec<Option<&'a TransferFunction>> {
         let beside = match self.beside {
             Beside::Channels(channels) => channels.iter().map(|c| c.transfer).collect(),
-            Beside::Nothing | Beside::Colors(_) | Beside::Classified(_) | Beside::Points(_) => {
-                Vec::new()
-            }
+            Beside::Nothing
+            | Beside::Colors(_)
+            | Beside::Classified(_)
+            | Beside::Preclassified
+            | Beside::Points(_) => Vec::new(),
         };
         [self.transfer].into_iter().chain(beside).collect()
+    }
+
+    /// True where voxels are classified, and what they are made of is interpolated.
+    pub(crate) fn is_classified(&self) -> bool {
+        matches!(self.beside, Beside::Classified(_) | Beside::Preclassified)
+    }
+
+    /// By what its voxels are classified, where they are not yet.
+    ///
+    /// # Errors
+    /// [`Error::NoTransferFunction`].
+    pub(crate) fn law(&self) -> Result<Option<Law>, Error> {
+        if !matches!(self.beside, Beside::Preclassified) {
+            return Ok(None);
+        }
+        let function = self.transfer.ok_or(Error::NoTransferFunction)?;
+        let own = function.reference_length;
+        Ok(Some(Law {
+            function: function.clone(),
+            reference_length: own.unwrap_or_else(|| self.default_length()),
+            space: self.settings.color_space,
+        }))
     }
 
     /// The scenes whose pictures are added up: modes that project classify the channels one by one.
@@ -161,10 +193,10 @@ impl<'a> Scene<'a> {
             return self.under_labels().check();
         }
         let volumes = self.volumes();
-        let (wanted, limit) = (volumes.len(), MAX_CHANNELS as usize);
         let grid = self.volume.grid();
         let has_own_grids = volumes.iter().any(|volume| volume.grid() != grid);
         let roles = self.roles();
+        let (wanted, limit) = (roles.len(), MAX_CHANNELS as usize);
         // What a voxel is called, and what makes it opaque, are no numbers that can be projected.
         let only_composite = |role: &Role| matches!(role, Role::Labels | Role::Opacity);
         let Settings { mode, filter, .. } = *self.settings;
@@ -173,7 +205,8 @@ impl<'a> Scene<'a> {
         if are_several {
             self.settings.check_mixed()?;
         }
-        let is_classified = matches!(self.beside, Beside::Classified(_));
+        let is_classified = self.is_classified();
+        self.law()?;
         self.settings.check_splatted(are_several, is_classified)?;
         self.settings
             .check_points(matches!(self.beside, Beside::Points(_)))?;
@@ -208,9 +241,7 @@ impl<'a> Scene<'a> {
         if self.uses_gradient() && mode == Mode::Mida && self.settings.per_mode.mida_gamma > 0.0 {
             return Err(Error::NoGradientTransfer { mode });
         }
-        if let (Beside::Classified(_), Some(CutFaces::Grey(_))) =
-            (self.beside, self.settings.cut_faces)
-        {
+        if is_classified && matches!(self.settings.cut_faces, Some(CutFaces::Grey(_))) {
             return Err(Error::NotFor {
                 wanted: "a window of greys on cut faces",
                 of: "values",
@@ -227,7 +258,7 @@ impl<'a> Scene<'a> {
                 Err(Error::FilterAlone { filter })
             }
             SampleInputs::Colors if has_own_grids => Err(Error::OtherGrid),
-            SampleInputs::Colors if matches!(self.beside, Beside::Classified(_)) && wanted != 4 => {
+            SampleInputs::Colors if is_classified && wanted != 4 => {
                 Err(Error::NoColor { found: wanted })
             }
             SampleInputs::Colors if !(3..=4).contains(&wanted) => {

@@ -165,6 +165,12 @@ impl From<offscreen::Error> for Error {
                 "--technique splat: the values are labels, and splats mix their neighbours: between two labels there is none",
                 "--technique raycast draws labels; --filter linear takes them for numbers",
             ),
+            offscreen::Error::Technique(error @ technique::Error::Classified { .. }) => {
+                Self::Limit {
+                    message: error.to_string(),
+                    hint: "without --preclassified a volume takes less".into(),
+                }
+            }
             offscreen::Error::Technique(error) => {
                 Self::usage(error.to_string(), technique_hints::hint(&error))
             }
@@ -183,6 +189,8 @@ impl From<offscreen::Error> for Error {
                 "--flow stream draws lines along the wind",
             ),
             offscreen::Error::Read(error) => Self::Read(error),
+            // Renderers of the program are made of all volumes of their scenes.
+            offscreen::Error::FewerVolumes { .. } => unreachable!("{error}"),
             offscreen::Error::NotStreamed { .. } | offscreen::Error::Outline => Self::usage(
                 error.to_string(),
                 "--fit draws a reduced volume that fits into memory",

@@ -132,7 +132,17 @@ pub fn filter_by(input: &InputFlags, wanted: FilterBy, volumes: &[&Volume]) -> F
         let corners = FootprintTexels::bytes_of(stored, volume.dims).unwrap_or(0);
         (volume.voxels.len() as u64 * voxel_bytes).saturating_add(corners)
     };
-    let bytes: u64 = volumes.iter().map(bytes_of).fold(0, u64::saturating_add);
+    let bytes = volumes.iter().map(bytes_of).fold(0, u64::saturating_add);
+    filter_by_of_bytes(input, wanted, bytes)
+}
+
+/// The same of voxels that are classified: of the four volumes of floats that are made of them.
+pub fn filter_by_of_classified(input: &InputFlags, wanted: FilterBy, volume: &Volume) -> FilterBy {
+    let voxel_bytes = 4 * (4 + u64::from(volume.validity.is_some()));
+    filter_by_of_bytes(input, wanted, voxel_bytes * volume.voxels.len() as u64)
+}
+
+fn filter_by_of_bytes(input: &InputFlags, wanted: FilterBy, bytes: u64) -> FilterBy {
     match (wanted, input.max_memory) {
         (FilterBy::Auto, Some(there)) if bytes as f64 > SHARE * there as f64 => FilterBy::Sampler,
         _ => wanted,

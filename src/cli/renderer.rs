@@ -9,7 +9,7 @@ use super::{
     memory::{DeviceMemory, DeviceRoom},
     progress::Progress,
     signals::Gate,
-    timings::{Stages, in_ms, ms_since},
+    timings::{RunsHeld, Stages, in_ms, ms_since},
 };
 use crate::{
     camera::Camera,
@@ -517,7 +517,7 @@ impl<'a> Renderer<'a> {
             longest_submission_ms: submitted.longest_ms,
             filtered_by: filtered.map(|filtered| filtered.by),
             filtered_because: filtered.map(|filtered| filtered.because),
-            runs: on_device.and_then(|renderer| renderer.runs().map(Into::into)),
+            runs: on_device.and_then(|renderer| RunsHeld::of(renderer)),
             ..Stages::default()
         };
         stages.with_view(&self.job.scene(camera).view(&grid, InPixel::CENTER))
@@ -578,7 +578,9 @@ fn has_labels(job: &Job) -> bool {
                 && labels_of(job.volume).is_some()
         }
         Beside::Channels(channels) => channels.iter().any(|one| one.role == Role::Labels),
-        Beside::Colors(_) | Beside::Classified(_) | Beside::Points(_) => false,
+        Beside::Colors(_) | Beside::Classified(_) | Beside::Preclassified | Beside::Points(_) => {
+            false
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! What the work took: the file of `--timings`.
 
-use crate::resident::RunsSize;
+use crate::offscreen::Renderer;
+use crate::resident::{MadeBy, RunsSize};
 use crate::technique::shear_warp::base_plane;
 use crate::technique::splat::Sheets;
 use crate::technique::{Technique, View};
@@ -94,12 +95,24 @@ pub struct RunsHeld {
     pub runs: u64,
     /// Bytes of all of it.
     pub bytes: u64,
+    /// `device` or `host`.
+    pub made_by: &'static str,
 }
 
-impl From<RunsSize> for RunsHeld {
-    fn from(size: RunsSize) -> Self {
-        let RunsSize { full, runs, bytes } = size;
-        Self { full, runs, bytes }
+impl RunsHeld {
+    /// Those that the last picture of a renderer read.
+    pub fn of(renderer: &Renderer) -> Option<Self> {
+        let RunsSize { full, runs, bytes } = renderer.runs()?;
+        let made_by = match renderer.runs_made_by()? {
+            MadeBy::Host => "host",
+            MadeBy::Device => "device",
+        };
+        Some(Self {
+            full,
+            runs,
+            bytes,
+            made_by,
+        })
     }
 }
 

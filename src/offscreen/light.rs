@@ -72,6 +72,14 @@ pub fn matter_volumes<'a>(scene: &Scene<'a>) -> Vec<&'a Volume> {
     }
 }
 
+/// How many volumes they are on the device, where voxels that are classified are four.
+pub fn matter_count(scene: &Scene) -> usize {
+    match scene.settings.mode {
+        Mode::Iso => 1,
+        _ => scene.roles().len(),
+    }
+}
+
 /// Makes it of these volumes of the scene, and waits for it.
 pub fn made_light(
     device: &mut Headless,

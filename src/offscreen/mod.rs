@@ -72,6 +72,14 @@ pub enum Error {
         /// What was asked for.
         what: &'static str,
     },
+    /// A scene of more volumes than its renderer was made of.
+    #[error("the scene shows {wanted} volumes, and the renderer was made of {found}")]
+    FewerVolumes {
+        /// Of the scene.
+        wanted: usize,
+        /// Of the renderer.
+        found: usize,
+    },
     /// A scene and a renderer of different streams.
     #[error("the scene shows a stream, and the renderer is not one of that stream")]
     Outline,

@@ -29,7 +29,9 @@ pub fn labels(scene: &Scene, depths: &[f32]) -> Vec<f32> {
 pub fn label_map<'a>(scene: &Scene<'a>) -> Option<&'a Volume> {
     match scene.beside {
         Beside::Nothing => Some(scene.volume).filter(|volume| !volume.is_outline()),
-        Beside::Colors(_) | Beside::Classified(_) | Beside::Points(_) => None,
+        Beside::Colors(_) | Beside::Classified(_) | Beside::Preclassified | Beside::Points(_) => {
+            None
+        }
         Beside::Channels(channels) => {
             let map = channels.iter().find(|one| one.role == Role::Labels);
             map.map(|map| map.volume)

@@ -61,6 +61,16 @@ pub fn render_with<R: Real>(scene: &Scene, geometry: Option<&Geometry>) -> Resul
     if geometry.is_some() {
         behind::check_geometry(scene.settings)?;
     }
+    if let Some(law) = scene.law()? {
+        let made = law.volumes(scene.volume)?;
+        let [red, beside @ ..] = made.each_ref();
+        let classified = Scene {
+            volume: red,
+            beside: Beside::Classified(&beside),
+            ..*scene
+        };
+        return render_with::<R>(&classified, geometry);
+    }
     let labels = scene.labels_over();
     let mut picture = render_unlabeled::<R>(&scene.under_labels(), geometry)?;
     for map in labels {

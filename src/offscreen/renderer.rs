@@ -20,6 +20,7 @@ mod path_layers;
 mod path_sky;
 mod path_sums;
 mod paths;
+mod preclassified;
 mod readback;
 mod runs;
 mod skipping;
@@ -62,6 +63,7 @@ use path_sky::PathSky;
 pub use path_sums::PathSums;
 use paths::Ends;
 pub use paths::Traced;
+use preclassified::Preclassified;
 use skipping::Skipped;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -88,6 +90,8 @@ pub struct Renderer<'v> {
     shown: usize,
     /// What comes brick by brick; the volumes are its outline then.
     streaming: Option<Streaming<'v>>,
+    /// What a function made of its voxels, where they are classified before they are interpolated.
+    preclassified: Preclassified,
     /// What has been needed so far.
     resident: HashMap<Copied, Vec<GpuVolume>>,
     transfer: Keyed<Classifying, GpuTransfer>,
@@ -178,6 +182,8 @@ impl<'v> Renderer<'v> {
         for (settings, _) in &stacks_of(scene) {
             self.upload(&Scene { settings, ..*scene })?;
         }
+        self.check_volumes(scene)?;
+        self.heed_law(scene)?;
         let mut copied = Copied::of(scene);
         // The same picture comes out the same whatever was drawn before: texels that are there already are as good as corners,
         // not as runs.
@@ -186,7 +192,7 @@ impl<'v> Renderer<'v> {
             let is_there = |copied| self.resident.contains_key(copied);
             let is_lean = is_there(&copied)
                 || match copied.runs {
-                    Some(_) => self.upload_runs(copied)?,
+                    Some(floats) => self.upload_runs(copied, floats)?,
                     None => !is_there(&with_texels) && self.upload_corners(copied)?,
                 };
             if is_lean {
@@ -201,17 +207,16 @@ impl<'v> Renderer<'v> {
                 gradient_source,
                 kept,
                 is_by_corners: _,
+                is_preclassified: _,
                 runs: _,
             } = copied;
+            self.make_volumes(copied)?;
+            let volumes = self.preclassified.read(copied, &self.volumes);
             let device = &mut self.device;
             let mut made = match gradient_source {
-                None => upload(device, &self.volumes, layout, spline)?,
+                None => upload(device, &volumes, layout, spline)?,
                 Some(source) => vec![upload_with_gradient_source(
-                    device,
-                    self.volumes[0],
-                    layout,
-                    spline,
-                    source,
+                    device, volumes[0], layout, spline, source,
                 )?],
             };
             if let Some(operator) = kept {
@@ -220,6 +225,16 @@ impl<'v> Renderer<'v> {
             self.resident.insert(copied, made);
         }
         self.keep_corners(scene, copied)
+    }
+
+    /// Each volume of a scene is one of the renderer's.
+    fn check_volumes(&self, scene: &Scene) -> Result<(), Error> {
+        let wanted = self.shown + scene.volumes().len();
+        let found = self.volumes.len();
+        match wanted > found {
+            true => Err(Error::FewerVolumes { wanted, found }),
+            false => Ok(()),
+        }
     }
 
     /// Makes the pipelines that pictures of `scene` take and the images that they are drawn in, as far as they are

@@ -27,6 +27,15 @@ pub enum PayloadFloats {
     Single,
 }
 
+/// Who makes runs of classified voxels: the bytes are the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MadeBy {
+    /// The host, of four volumes ([`ClassifiedRuns::new`]).
+    Host,
+    /// The device, of codes ([`RunBuilder`]).
+    Device,
+}
+
 /// What runs of classified voxels take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RunsSize {
@@ -44,6 +53,7 @@ pub struct ClassifiedRuns {
     words: Image,
     payload: Image,
     size: RunsSize,
+    made_by: MadeBy,
 }
 
 impl PayloadFloats {
@@ -167,6 +177,7 @@ impl ClassifiedRuns {
             words,
             payload,
             size,
+            made_by: MadeBy::Host,
         }))
     }
 
@@ -185,6 +196,11 @@ impl ClassifiedRuns {
     /// What they take.
     pub fn size(&self) -> RunsSize {
         self.size
+    }
+
+    /// Who made them.
+    pub fn made_by(&self) -> MadeBy {
+        self.made_by
     }
 
     /// In [`Use::Sampled`], as the payload is.

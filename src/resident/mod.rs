@@ -26,7 +26,7 @@ pub(crate) use bricks::sort_front_to_back;
 pub use bricks::{Cell, cells_of_side, front_to_back, front_to_back_by_rows};
 pub(crate) use cell_ranges::filtered;
 pub(crate) use changed_cells::ChangedCells;
-pub use classified_runs::{ClassifiedRuns, PayloadFloats, RunBuilder, RunsSize};
+pub use classified_runs::{ClassifiedRuns, MadeBy, PayloadFloats, RunBuilder, RunsSize};
 pub use empty_space::EmptySpace;
 pub use footprint_texels::FootprintTexels;
 pub use full_voxels::FullVoxels;

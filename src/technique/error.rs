@@ -14,6 +14,12 @@ pub enum Error {
         /// What a ray may take.
         limit: u32,
     },
+    /// Voxels whose materials make no volumes.
+    #[error("classified voxels make no volume: {problem}")]
+    Classified {
+        /// What is wrong with them.
+        problem: String,
+    },
     /// The driver would cut the ray short.
     #[error(
         "a ray through the volume would take {wanted:.0} samples, and this driver ends its loops after {limit:.0} such \

@@ -12,9 +12,39 @@
 //! function between them nothing is left, and an edge is as blurred as the filter (`sampling.md` 4). Shader:
 //! `shaders/lib/material_colors.wgsl`.
 
+use super::Error;
 use crate::color::ColorSpace;
 use crate::transfer::{Absorption, Points, TransferFunction, classify_by_points};
 use crate::volume::{Codes, Problem, Rescale, Volume, Voxels};
+
+/// By what voxels are classified.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Law {
+    /// Of values alone.
+    pub function: TransferFunction,
+    /// World length that depths are over.
+    pub reference_length: f64,
+    /// In which colours are blended.
+    pub space: ColorSpace,
+}
+
+impl Law {
+    /// [`preclassified`].
+    ///
+    /// # Errors
+    /// [`Error::Classified`].
+    pub fn volumes(&self, volume: &Volume) -> Result<[Volume; 4], Error> {
+        let made = preclassified(volume, &self.function, self.reference_length, self.space);
+        made.map_err(|problem| Error::Classified {
+            problem: problem.to_string(),
+        })
+    }
+
+    /// [`materials_of_codes`].
+    pub fn materials(&self, volume: &Volume) -> Option<Vec<[f32; 4]>> {
+        materials_of_codes(volume, &self.function, self.reference_length, self.space)
+    }
+}
 
 /// What stored numbers are made of.
 struct Materials {

@@ -161,6 +161,47 @@ pub const VOXEL_FAULTS: &[(&str, Fault, &str)] = &[
         CLASSIFIED,
     ),
     (
+        "the device finds the last voxel of a word of 32 empty",
+        Shader("run_words.wgsl", "bit < count;", "bit < min(count, 31u);"),
+        CLASSIFIED,
+    ),
+    (
+        "the device counts the full voxels of a word among those before it",
+        Shader(
+            "run_words.wgsl",
+            "counts[thread].x - own.x",
+            "counts[thread].x",
+        ),
+        CLASSIFIED,
+    ),
+    (
+        "blocks of words of full voxels begin as if none came before",
+        Shader(
+            "run_payload.wgsl",
+            "word.y + run_list.d[run_build.texel_count + block.x].x",
+            "word.y",
+        ),
+        CLASSIFIED,
+    ),
+    (
+        "the device puts payloads of full voxels one place too far",
+        Shader(
+            "run_payload.wgsl",
+            "rank - run_build.first_rank",
+            "rank + 1u - run_build.first_rank",
+        ),
+        CLASSIFIED,
+    ),
+    (
+        "the last block of words of full voxels is not summed up",
+        Shader(
+            "run_blocks.wgsl",
+            "min((thread + 1u) * share, run_build.block_count)",
+            "min((thread + 1u) * share, run_build.block_count - 1u)",
+        ),
+        CLASSIFIED,
+    ),
+    (
         "behind the end of a row lies an empty classified voxel",
         Shader(
             "lib/channels_on_runs.wgsl",

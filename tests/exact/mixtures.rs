@@ -159,7 +159,7 @@ fn check_against_references(
     what: &str,
 ) {
     let volumes = match beside {
-        Beside::Nothing | Beside::Points(_) => vec![volume],
+        Beside::Nothing | Beside::Preclassified | Beside::Points(_) => vec![volume],
         Beside::Channels(all) => {
             let others = all.iter().map(|channel| channel.volume);
             [volume].into_iter().chain(others).collect()

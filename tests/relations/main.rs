@@ -14,6 +14,7 @@ mod classified_runs;
 mod domain;
 mod lattice;
 mod macro_cells;
+mod preclassified;
 mod projection;
 mod runs_on_device;
 mod skipping;

@@ -14,10 +14,10 @@ use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunct
 use stratavox::volume::{Rescale, Volume, Voxels};
 
 const FLOATS: [PayloadFloats; 2] = [PayloadFloats::Half, PayloadFloats::Single];
-const SPACES: [ColorSpace; 2] = [ColorSpace::Linear, ColorSpace::Display];
+pub const SPACES: [ColorSpace; 2] = [ColorSpace::Linear, ColorSpace::Display];
 
 /// Values from 0 to 1; nothing below `first`, and everything where that is below 0.
-fn function(first: f64, interpolation: Interpolation) -> TransferFunction {
+pub fn function(first: f64, interpolation: Interpolation) -> TransferFunction {
     let opacity = [(first, 0.0), (first + 0.2, 0.3), (1.0, 0.9)];
     let color = [
         (0.0, [1.0, 0.2, 0.1]),
@@ -37,7 +37,7 @@ fn function(first: f64, interpolation: Interpolation) -> TransferFunction {
 }
 
 /// Numbers from 0 to 1 as each type of 8 and 16 bits stores them.
-fn volumes(dims: [u32; 3], values: &[f64], validity: Option<&[u8]>) -> Vec<Volume> {
+pub fn volumes(dims: [u32; 3], values: &[f64], validity: Option<&[u8]>) -> Vec<Volume> {
     let made = |voxels, slope: f64, intercept| {
         let rescale = Rescale { slope, intercept };
         let made = Volume::from_voxels(dims, DAffine3::IDENTITY, voxels, rescale, None);
@@ -228,6 +228,16 @@ fn what_the_device_cannot_make_is_left_to_the_host() {
     ] {
         assert!(builder(&mut device_with(caps), &volume).is_none());
     }
+    // As many workgroups as there are blocks, of 64 words each: two of 128 words.
+    let two_groups = Caps {
+        max_workgroup_count: [2, 1, 1],
+        ..Caps::UNLIMITED
+    };
+    let mut lean = device_with(two_groups);
+    let there = builder(&mut lean, &volume).expect("two workgroups");
+    let made = there.build(&mut lean, &vec![[0.5; 4]; 65_536], PayloadFloats::Half);
+    let made = made.expect("two workgroups").expect("small numbers");
+    assert_eq!(made.size().full, 2560);
     // Numbers that 16 bits do not hold, of a code that a voxel has and of one that none has.
     let there = builder(&mut whole, &volume).expect("codes");
     let mut materials = vec![[0.0; 4]; 65_536];

@@ -62,7 +62,7 @@ impl SceneInputs {
         }
         match &mut self.others {
             Others::Channels(others) => Ok(others),
-            Others::Colors(_) | Others::Classified(_) | Others::Points(_) => Err(Error::usage(
+            Others::Colors(_) | Others::Preclassified | Others::Points(_) => Err(Error::usage(
                 format!("{word} goes with volumes of numbers, and this one is of colours"),
                 "take one of them: --component 0",
             )),

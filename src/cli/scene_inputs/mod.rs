@@ -76,7 +76,7 @@ pub struct SceneInputs {
 enum Others {
     Channels(Vec<Other>),
     Colors(Vec<Volume>),
-    Classified(Vec<Volume>),
+    Preclassified,
     Points(Points),
 }
 
@@ -277,7 +277,7 @@ impl SceneInputs {
         };
         shown.context = said;
         if scene.sampling.preclassified {
-            return preclassified::classified(shown, settings.color_space);
+            return preclassified::classified(shown);
         }
         shown.with_beside(&reader)
     }
@@ -299,8 +299,7 @@ impl SceneInputs {
                 }
                 return Ok(self);
             }
-            (Others::Colors(own), Others::Colors(after))
-            | (Others::Classified(own), Others::Classified(after)) => own.iter_mut().zip(after),
+            (Others::Colors(own), Others::Colors(after)) => own.iter_mut().zip(after),
             _ => return Ok(self),
         };
         for (own, after) in pairs {
@@ -367,9 +366,12 @@ impl SceneInputs {
             .into_iter()
             .chain(beside.volumes())
             .collect();
-        match self.stream {
-            Some(_) => wanted,
-            None => memory::filter_by(&scene.input, wanted, &volumes),
+        match (&self.stream, beside) {
+            (Some(_), _) => wanted,
+            (None, Beside::Preclassified) => {
+                memory::filter_by_of_classified(&scene.input, wanted, &self.volume)
+            }
+            (None, _) => memory::filter_by(&scene.input, wanted, &volumes),
         }
     }
 
@@ -387,7 +389,7 @@ impl SceneInputs {
                     .collect(),
             ),
             Others::Colors(volumes) => Parts::Colors(volumes.iter().collect()),
-            Others::Classified(volumes) => Parts::Classified(volumes.iter().collect()),
+            Others::Preclassified => Parts::Preclassified,
             Others::Points(points) => Parts::Points(points),
         }
     }
@@ -400,8 +402,8 @@ pub enum Parts<'a> {
     Channels(Vec<Channel<'a>>),
     /// Green, blue, and perhaps alpha.
     Colors(Vec<&'a Volume>),
-    /// Green, blue and depth of classified voxels.
-    Classified(Vec<&'a Volume>),
+    /// Nothing: the voxels are classified before they are interpolated.
+    Preclassified,
     /// Scattered points, for which the volume stands.
     Points(&'a Points),
 }
@@ -411,9 +413,11 @@ impl Parts<'_> {
     pub fn only<'a>(&self, classification: &'a Classification) -> &'a Classification {
         match self.beside() {
             Beside::Nothing => classification,
-            Beside::Channels(_) | Beside::Colors(_) | Beside::Classified(_) | Beside::Points(_) => {
-                &Classification::RangeOfPicture
-            }
+            Beside::Channels(_)
+            | Beside::Colors(_)
+            | Beside::Classified(_)
+            | Beside::Preclassified
+            | Beside::Points(_) => &Classification::RangeOfPicture,
         }
     }
 
@@ -423,7 +427,7 @@ impl Parts<'_> {
             Self::Channels(channels) if channels.is_empty() => Beside::Nothing,
             Self::Channels(channels) => Beside::Channels(channels),
             Self::Colors(volumes) => Beside::Colors(volumes),
-            Self::Classified(volumes) => Beside::Classified(volumes),
+            Self::Preclassified => Beside::Preclassified,
             Self::Points(points) => Beside::Points(points),
         }
     }

@@ -1,15 +1,11 @@
-//! `--preclassified`: what voxels are made of, in the place of their values.
+//! `--preclassified`: what goes with voxels that are classified before they are interpolated.
 
 use super::super::{
     Error,
     flags::{Classification, Component, SceneFlags},
 };
 use super::{Others, SceneInputs};
-use crate::{
-    picture::ColorSpace,
-    technique::{CutFaces, Lattice, Mode, Settings, preclassified::preclassified},
-};
-use std::sync::Arc;
+use crate::technique::{CutFaces, Lattice, Mode, Settings};
 
 /// What can be said wrong before anything is opened.
 pub fn check(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
@@ -48,8 +44,8 @@ pub fn check(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
     }
 }
 
-/// The same volume, each of its voxels classified.
-pub fn classified(shown: SceneInputs, space: ColorSpace) -> Result<SceneInputs, Error> {
+/// The same volume, whose voxels are to be classified.
+pub fn classified(shown: SceneInputs) -> Result<SceneInputs, Error> {
     let Classification::Function(function) = &shown.classification else {
         unreachable!("only integrals have no function yet")
     };
@@ -59,18 +55,8 @@ pub fn classified(shown: SceneInputs, space: ColorSpace) -> Result<SceneInputs, 
             "leave out --preclassified, or take a function of the value alone",
         ));
     }
-    let volume = &shown.volume;
-    let length = function
-        .reference_length
-        .unwrap_or_else(|| volume.grid().smallest_spacing());
-    let made = preclassified(volume, function, length, space).map_err(|problem| Error::Limit {
-        message: problem.to_string(),
-        hint: "without --preclassified a volume takes less".into(),
-    })?;
-    let [red, green, blue, depth] = made;
     Ok(SceneInputs {
-        volume: Arc::new(red),
-        others: Others::Classified(vec![green, blue, depth]),
+        others: Others::Preclassified,
         ..shown
     })
 }

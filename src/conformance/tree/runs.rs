@@ -5,7 +5,8 @@
 //! linear      along an axis, from places of few binary digits: samples lie in their slices to the last bit
 //! ```
 //!
-//! The dense numbers are stored as halves with a rescale by 2, of which there are no runs; no sum rounds otherwise for it.
+//! Voxels have codes of 16 bits, of which the device makes the runs. The dense numbers are stored as halves with a rescale by 2, of
+//! which there are no runs; no sum rounds otherwise for it.
 
 use super::ground::{self, SHEAR_WARP};
 use crate::camera::{Camera, Projection};
@@ -13,11 +14,9 @@ use crate::conformance::case::{Case, Profile, Stop};
 use crate::conformance::measurement::{Bound, Measurement, Pictures};
 use crate::conformance::oracle::{Numbers, PictureCase};
 use crate::conformance::test_bed::TestBed;
-use crate::picture::Picture;
 use crate::scene::{Beside, Scene};
 use crate::technique::preclassified::preclassified;
 use crate::technique::{Filter, Intermediate, Mode};
-use crate::transfer::TransferFunction;
 use crate::volume::{Rescale, Volume, Voxels};
 use glam::{DAffine3, DVec3, dvec3};
 
@@ -55,10 +54,22 @@ pub fn cases() -> Vec<Case> {
 fn measure(bed: &mut TestBed, look: Look) -> Result<Measurement, Stop> {
     let shot = shot(look);
     let function = ground::ramps();
-    let classified = classified(&shot, &function)?;
-    let found = picture(bed, &shot, &function, &classified)?;
-    let dense = classified.map(halved);
-    let expected = picture(bed, &shot, &function, &dense)?;
+    let volume = islands(&shot);
+    let coded = Scene {
+        beside: Beside::Preclassified,
+        ..shot.scene(&volume, Some(&function))
+    };
+    let found = bed.render(&coded, &[])?;
+    let (length, space) = (coded.reference_length(), coded.settings.color_space);
+    let made = preclassified(&volume, &function, length, space)
+        .map_err(|problem| Stop::Suite(problem.to_string()))?;
+    let dense = made.map(halved);
+    let [red, beside @ ..] = dense.each_ref();
+    let dense = Scene {
+        beside: Beside::Classified(&beside),
+        ..shot.scene(red, Some(&function))
+    };
+    let expected = bed.render(&dense, &[])?;
     let mut measurement = Measurement::new(Bound::new("same-bytes", DERIVATION), 1000);
     for (i, pixel) in shot.pixels().enumerate() {
         for c in 0..4 {
@@ -126,12 +137,20 @@ fn along(axis: usize) -> Camera {
 }
 
 /// Waves of which half are under water: full voxels with wide gaps between.
-fn classified(shot: &PictureCase, function: &TransferFunction) -> Result<[Volume; 4], Stop> {
-    let islands = |p: DVec3| (2.0 * ground::waves(1.6 * p) - 1.0).max(0.0);
-    let volume = Numbers::of(shot, islands).volume;
-    let length = shot.scene(&volume, Some(function)).length_of(function);
-    preclassified(&volume, function, length, shot.settings.color_space)
-        .map_err(|problem| Stop::Suite(problem.to_string()))
+fn islands(shot: &PictureCase) -> Volume {
+    const MOST: f64 = 65_535.0;
+    let above = |p: DVec3| (2.0 * ground::waves(1.6 * p) - 1.0).clamp(0.0, 1.0);
+    let volume = Numbers::of(shot, |p| (MOST * above(p)).round()).volume;
+    let Voxels::F32(numbers) = volume.voxels else {
+        unreachable!("made of floats")
+    };
+    let voxels = Voxels::U16(numbers.into_iter().map(|n| n as u16).collect());
+    let rescale = Rescale {
+        slope: 1.0 / MOST,
+        intercept: 0.0,
+    };
+    let made = Volume::from_voxels(volume.dims, volume.world_from_voxel, voxels, rescale, None);
+    made.expect("as many voxels as the grid has")
 }
 
 /// The same values otherwise stored.
@@ -147,18 +166,4 @@ fn halved(volume: Volume) -> Volume {
         },
         ..volume
     }
-}
-
-fn picture(
-    bed: &mut TestBed,
-    shot: &PictureCase,
-    function: &TransferFunction,
-    [red, beside @ ..]: &[Volume; 4],
-) -> Result<Picture, Stop> {
-    let beside: Vec<_> = beside.iter().collect();
-    let scene = Scene {
-        beside: Beside::Classified(&beside),
-        ..shot.scene(red, Some(function))
-    };
-    bed.render(&scene, &[])
 }

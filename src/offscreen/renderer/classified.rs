@@ -2,7 +2,7 @@
 
 use super::{Classifying, Renderer, parts_of};
 use crate::offscreen::Error;
-use crate::offscreen::light::{Matter, light_plan_of, made_light, matter_volumes};
+use crate::offscreen::light::{Matter, light_plan_of, made_light, matter_count};
 use crate::resident::GpuTransfer;
 use crate::scene::Scene;
 use crate::technique;
@@ -31,7 +31,7 @@ impl Renderer<'_> {
         let Some(plan) = plan else { return Ok(()) };
         let matter = Matter::of(scene, &functions);
         let mut parts = parts_of(&self.resident, self.shown, scene);
-        parts.truncate(matter_volumes(scene).len());
+        parts.truncate(matter_count(scene));
         let (device, slices) = (&mut self.device, &mut self.slices);
         let transfer = self.transfer.get();
         self.light.of((matter, plan), |(_, plan)| {

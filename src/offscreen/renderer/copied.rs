@@ -1,7 +1,7 @@
 //! In which forms volumes are on the device: what pictures read, and nothing beside it.
 
 use crate::resident::{KeptOperator, PayloadFloats, TextureLayout};
-use crate::scene::Scene;
+use crate::scene::{Beside, Scene};
 use crate::technique::{GradientSource, GradientStorage};
 use crate::volume::Spline;
 
@@ -18,6 +18,8 @@ pub(super) struct Copied {
     pub kept: Option<KeptOperator>,
     /// Footprint texels in place of texels, where there can be any.
     pub is_by_corners: bool,
+    /// What voxels are made of, in place of their values.
+    pub is_preclassified: bool,
     /// Runs of classified voxels in place of texels, where there can be any.
     pub runs: Option<PayloadFloats>,
 }
@@ -34,7 +36,8 @@ impl Copied {
             kept: kept.filter(|_| scene.has_gradients()),
             layout,
             is_by_corners: scene.settings.reads_footprint_texels_alone(scene.mix())
-                && scene.volumes().len() == 1,
+                && scene.roles().len() == 1,
+            is_preclassified: matches!(scene.beside, Beside::Preclassified),
             runs: scene.reads_runs(),
             spline: scene.settings.filter.spline(),
             gradient_source: gradient_source.filter(|_| scene.has_gradients()),

@@ -8,7 +8,7 @@ use crate::offscreen::targets::Targets;
 use crate::offscreen::time_slices::TimeSlices;
 use crate::offscreen::{
     Error,
-    renderer::{Ends, PathSky, Skipped},
+    renderer::{Ends, PathSky, Preclassified, Skipped},
 };
 use crate::technique::parameter_ring;
 use crate::volume::Volume;
@@ -67,6 +67,7 @@ impl<'v> Renderer<'v> {
             volumes,
             shown: 0,
             streaming: None,
+            preclassified: Preclassified::default(),
             resident: HashMap::new(),
             transfer: Keyed::default(),
             light: Keyed::default(),
@@ -96,13 +97,14 @@ impl<'v> Renderer<'v> {
             timer,
             mut device,
             resident,
+            preclassified,
             transfer,
             light,
             skipped,
             streaming,
             ..
         } = self;
-        drop((resident, transfer, light, skipped, streaming));
+        drop((resident, preclassified, transfer, light, skipped, streaming));
         // The next volume finds the memory of this one free.
         device.tidy();
         let tools = Tools {

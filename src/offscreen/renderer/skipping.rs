@@ -1,5 +1,6 @@
 //! Where rays need not look, made on the device and made anew only where it changes.
 
+use super::preclassified::DEPTH;
 use super::{Copied, Renderer, parts_of};
 use crate::gpu::{self, Headless};
 use crate::offscreen::Error;
@@ -39,7 +40,8 @@ type Shown = (
 struct Of {
     copied: Copied,
     shown: usize,
-    volumes: usize,
+    /// From this volume of the picture on, before that one.
+    numbers: [usize; 2],
     halo: Halo,
 }
 
@@ -76,8 +78,9 @@ impl Renderer<'_> {
         if !scene.settings.reads_footprint_texels(mix) {
             return Ok(());
         }
+        let volumes = self.preclassified.read(copied, &self.volumes);
         let there = self.resident.get_mut(&copied).into_iter().flatten();
-        for (made, volume) in there.zip(&self.volumes) {
+        for (made, volume) in there.zip(volumes) {
             let is_one = made.bricks().len() == 1 && made.spline().is_none();
             if made.corners().is_none()
                 && is_one
@@ -142,18 +145,20 @@ impl Renderer<'_> {
             return Ok(());
         };
         // One volume says nothing of the others.
-        let volumes = match &wanted {
-            Skippable::UnseenInAll(_) => scene.volumes().len(),
-            _ => 1,
+        let numbers = match &wanted {
+            // Depth alone says where classified voxels are.
+            Skippable::UnseenInAll(_) if scene.is_classified() => [DEPTH, DEPTH + 1],
+            Skippable::UnseenInAll(_) => [0, scene.roles().len()],
+            _ => [0, 1],
         };
         let of = Of {
             copied: Copied::of(scene),
             shown: self.shown,
-            volumes,
+            numbers,
             halo,
         };
         let mut cells = std::mem::take(&mut self.skipped.cells);
-        let found = cells.of(of, |_| self.make_cells(scene, volumes, halo));
+        let found = cells.of(of, |_| self.make_cells(scene, numbers, halo));
         let is_there = found.map(|found| found.is_some());
         self.skipped.cells = cells;
         if !is_there? {
@@ -171,7 +176,7 @@ impl Renderer<'_> {
         if !seen.is_empty() {
             let mut empty = std::mem::take(&mut self.skipped.empty);
             let key = (of, (seen, alike, scene.settings.empty_space));
-            let found = empty.of(key, |(_, shown)| self.make_empty_space(scene, shown, halo));
+            let found = empty.of(key, |(of, shown)| self.make_empty_space(scene, of, shown));
             let is_there = found.map(|found| found.is_some());
             self.skipped.empty = empty;
             if !is_there? {
@@ -186,11 +191,11 @@ impl Renderer<'_> {
     fn make_cells(
         &mut self,
         scene: &Scene,
-        volumes: usize,
+        [first, end]: [usize; 2],
         halo: Halo,
     ) -> Result<Option<Vec<MacroCells>>, Error> {
         let mut all = Vec::new();
-        for number in 0..volumes {
+        for number in first..end {
             let Some(made) = if_it_fits(self.cells_of(scene, number, halo))? else {
                 return Ok(None);
             };
@@ -212,12 +217,14 @@ impl Renderer<'_> {
     fn make_empty_space(
         &mut self,
         scene: &Scene,
+        of: &Of,
         (seen, alike, skip_by): &Shown,
-        halo: Halo,
     ) -> Result<Option<EmptySpace>, Error> {
         let cells = self.skipped.cells.get().and_then(Option::as_ref);
         let cells = cells.expect("made before");
-        let several: Vec<_> = seen.iter().map(|(n, seen)| (&cells[*n], seen)).collect();
+        let [first, _] = of.numbers;
+        let several = seen.iter().map(|(n, seen)| (&cells[n - first], seen));
+        let several: Vec<_> = several.collect();
         let gpu = self.device.gpu();
         let made = match alike {
             Some(alike) => EmptySpace::with_alike(gpu, &cells[0], &seen[0].1, alike),
@@ -228,7 +235,7 @@ impl Renderer<'_> {
         let Some(made) = if_it_fits(made)? else {
             return Ok(None);
         };
-        let made = match self.full_voxels(scene, &seen[0].1, *skip_by, halo) {
+        let made = match self.full_voxels(scene, &seen[0].1, *skip_by, of.halo) {
             None => made,
             Some(full) => match if_it_fits(full)? {
                 Some(full) => made.with_full_voxels(full),
@@ -275,13 +282,16 @@ impl Renderer<'_> {
         let GpuChannel { volume, role } = parts[number];
         let gpu = self.device.gpu();
         let halo = of_role(halo, role);
-        let voxels = self.volumes[self.shown + number];
+        let voxels = || {
+            self.preclassified
+                .voxels(scene, &self.volumes, self.shown + number)
+        };
         if volume.grid() != parts[0].volume.grid() {
-            return MacroCells::of_channel(gpu, parts[0].volume, volume, halo, voxels);
+            return MacroCells::of_channel(gpu, parts[0].volume, volume, halo, &voxels());
         }
         let is_by_host = gpu.is_cpu() || !volume.has_texels();
         match is_by_host && volume.spline().is_none() {
-            true => MacroCells::of_voxels(gpu, volume, halo, voxels),
+            true => MacroCells::of_voxels(gpu, volume, halo, &voxels()),
             false => MacroCells::new(gpu, volume, halo),
         }
     }
@@ -323,9 +333,8 @@ pub(super) fn wanted(scene: &Scene) -> Option<(Skippable, Halo)> {
             let seen = functions.iter().map(|&(n, f)| (n, VisibleRanges::new(f)));
             scene.settings.skippable_in_all(seen.collect())
         }
-        // Depth, the last one.
-        (_, Beside::Classified(beside)) => {
-            let seen = (beside.len(), VisibleRanges::positive());
+        (_, Beside::Classified(_) | Beside::Preclassified) => {
+            let seen = (DEPTH, VisibleRanges::positive());
             scene.settings.skippable_in_all(vec![seen])
         }
         (mix, _) => {

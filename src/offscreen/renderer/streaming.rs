@@ -67,6 +67,7 @@ impl<'v> Renderer<'v> {
         let refused = match () {
             () if !settings.technique.streams() => "another technique than ray casting",
             () if scene.volumes().len() > 1 => "several volumes",
+            () if scene.is_classified() => "classified voxels",
             () if settings.filter.spline().is_some() => "a filter that reads coefficients",
             () if settings.single_scattering.is_some() => "single scattering",
             () if settings.wants_light_volume() => "occlusion or shadows",

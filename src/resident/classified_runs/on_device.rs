@@ -11,7 +11,7 @@
 //! many codes.
 
 use super::texels::{Texels, WIDTH, bytes_in};
-use super::{ClassifiedRuns, PayloadFloats, RunsSize};
+use super::{ClassifiedRuns, MadeBy, PayloadFloats, RunsSize};
 use crate::gpu::{
     Bindings, Buffer, ComputePipeline, Error, Gpu, Headless, Memory, ParameterRing, Region,
     Resource, Use, buffer_barrier, buffer_to_buffer,
@@ -165,7 +165,7 @@ impl RunBuilder {
             ("run_payloads", Resource::Storage(&made)),
         ];
         let bindings = Bindings::new(&gpu, self.payload.layout(), &given)?;
-        let groups = self.payload.groups([texel_count, 1, 1])?;
+        let groups = [block_count, 1, 1];
         let height = of_payload.extent()[1];
         for part in of_payload.parts(rows) {
             let [width, part_height, _] = part.extent;
@@ -201,7 +201,20 @@ impl RunBuilder {
             words,
             payload,
             size,
+            made_by: MadeBy::Device,
         }))
+    }
+
+    /// Smallest and largest of the four numbers that voxels with data are made of; 0 where none has any.
+    pub(crate) fn ranges(&self, materials: &[[f32; 4]]) -> [[f64; 2]; 4] {
+        let there = materials.iter().zip(&self.occurring);
+        let there = there.filter_map(|(material, occurs)| occurs.then_some(material));
+        let range = |number: usize| {
+            let numbers = there.clone().map(|material| f64::from(material[number]));
+            let ends = numbers.map(|n| [n, n]);
+            ends.reduce(|[low, high], [n, _]| [low.min(n), high.max(n)])
+        };
+        std::array::from_fn(|number| range(number).unwrap_or_default())
     }
 
     /// The first two passes: how many voxels are full, and how many runs there are.
@@ -234,7 +247,7 @@ impl RunBuilder {
             ("run_classes", Resource::Storage(classes)),
         ];
         let of_words = Bindings::new(&gpu, self.words.layout(), &given)?;
-        let groups = self.words.groups([parameters.texel_count, 1, 1])?;
+        let groups = [parameters.block_count, 1, 1];
         let offset = [self.ring.offset(0)?];
         device.run(|cmd| {
             // SAFETY: recorded outside rendering; all of it lives until `run` has waited; the host has written the classes before,
