@@ -20,7 +20,7 @@ fn of_range(name: &str) -> &'static str {
         "the noise" => "--noise 0.01 ends where the error is 1 %",
         "seconds" => "--seconds 60 ends after a minute",
         "tentative collisions in a macro cell" => {
-            "a smaller --density-scale: matter with 128 collisions in a voxel is opaque"
+            "a smaller --density-scale: matter with 375 collisions in a voxel is opaque"
         }
         "the density scale" => "--density-scale 1 leaves extinction as it is",
         "the scale of albedos" => "--albedo 1 leaves albedos as they are, 0 scatters nothing",

@@ -144,7 +144,14 @@ impl OfPaths {
     }
 
     /// The same under other settings.
-    pub fn under(&self, settings: &Settings, volume: &super::Volume) -> Option<Box<Self>> {
+    ///
+    /// # Errors
+    /// Those of [`Self::new`].
+    pub fn under(
+        &self,
+        settings: &Settings,
+        volume: &super::Volume,
+    ) -> Result<Option<Box<Self>>, technique::Error> {
         Self::new(Some(&self.function), settings, volume)
     }
 }

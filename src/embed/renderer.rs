@@ -228,7 +228,7 @@ impl Renderer {
         if let Some(there) = &self.function.paths
             && toned != class.settings
         {
-            self.function.paths = there.under(&class.settings, &self.volume);
+            self.function.paths = there.under(&class.settings, &self.volume)?;
             self.traced = None;
         }
         self.class = class;

@@ -251,10 +251,10 @@ pub(crate) fn most_extinction(function: &TransferFunction, absorption: Absorptio
 /// Light that matter sends out is found at tentative collisions: no farther apart than this on average, in voxels.
 const EMISSION_SPACINGS: f64 = 8.0;
 
-/// Tentative collisions on a side of a macro cell, in the mean, where it holds the densest matter: 128 in a voxel, through which
+/// Tentative collisions on a side of a macro cell, in the mean, where it holds the densest matter: 375 in a voxel, through which
 /// no light comes. What has more of them takes very long where dense matter ends within a cell, and longer than drivers let a loop last
-/// (some 3000 turns of a path, [`MOST_TURNS`]).
-const MOST_IN_CELL: f64 = 1024.0;
+/// (as many turns a path has where nothing else takes some, [`MOST_TURNS`]).
+const MOST_IN_CELL: f64 = 3000.0;
 
 /// f32 rounds a table's entries and the products with them.
 const MAJORANT_SLACK: f64 = 1.0 + 1e-5;
@@ -298,7 +298,7 @@ impl PathTracing {
         let cell = f64::from(CELL_VOXELS) * smallest_spacing;
         let in_cell = f64::from(majorants.of_all()) * cell;
         let name = "tentative collisions in a macro cell";
-        Error::unless(in_cell <= MOST_IN_CELL, name, "at most 1024", in_cell)?;
+        Error::unless(in_cell <= MOST_IN_CELL, name, "at most 3000", in_cell)?;
         // A search halves the points of colour and of opacity.
         let medium = function.medium.iter();
         let medium = medium.map(|m| m.extinction.len() + m.albedo.len() + m.emission.len());
