@@ -12,6 +12,7 @@ use crate::{
     cli::{
         Error,
         flags::SceneFlags,
+        flow::DrawnLines,
         progress::Progress,
         renderer::{Device, Job, Renderer},
         scene_inputs::Parts,
@@ -58,40 +59,45 @@ impl<'a> Union<'a> {
         progress: &Progress,
     ) -> Result<Vec<Option<PixelBox>>, Error> {
         let mut seen = vec![None; cameras.len()];
-        let mut draw = |volume: &Volume, parts: &Parts, frames: &[&Ready]| -> Result<(), Error> {
-            let job = Job {
-                volume,
-                classification: &frames[0].classification,
-                stream: None,
-                beside: parts.beside(),
-                lines: match self.content {
-                    Content::Still(shown) | Content::Together(shown, _) => shown.lines(),
-                    Content::Times(..) => None,
-                },
-                settings: &frames[0].settings,
-                extent_pixels,
-                layers: &[],
+        type Beside<'s> = (&'s Parts<'s>, Option<&'s DrawnLines>);
+        let mut draw =
+            |volume: &Volume, (parts, lines): Beside, frames: &[&Ready]| -> Result<(), Error> {
+                let job = Job {
+                    volume,
+                    classification: &frames[0].classification,
+                    stream: None,
+                    beside: parts.beside(),
+                    lines,
+                    settings: &frames[0].settings,
+                    extent_pixels,
+                    layers: &[],
+                };
+                let mut renderer = Renderer::new(job, &cameras[0], devices.remove(0))?;
+                for ready in frames {
+                    renderer.change(&ready.classification, &ready.settings);
+                    for (camera, seen) in cameras.iter().zip(&mut seen) {
+                        let found = visible_in(&renderer.draw(camera)?.picture);
+                        let found = box_of(&found, extent_pixels[0]);
+                        *seen = match (*seen, found) {
+                            (Some(a), Some(b)) => Some(PixelBox::union(a, b)),
+                            (a, b) => a.or(b),
+                        };
+                    }
+                }
+                devices.insert(0, renderer.into_device());
+                Ok(())
             };
-            let mut renderer = Renderer::new(job, &cameras[0], devices.remove(0))?;
-            for ready in frames {
-                renderer.change(&ready.classification, &ready.settings);
-                for (camera, seen) in cameras.iter().zip(&mut seen) {
-                    let found = visible_in(&renderer.draw(camera)?.picture);
-                    let found = box_of(&found, extent_pixels[0]);
-                    *seen = match (*seen, found) {
-                        (Some(a), Some(b)) => Some(PixelBox::union(a, b)),
-                        (a, b) => a.or(b),
-                    };
+        match self.content {
+            Content::Still(shown) => {
+                for frames in self.frames.values() {
+                    draw(shown.looked_at(), (&shown.parts(), shown.lines()), frames)?;
                 }
             }
-            devices.insert(0, renderer.into_device());
-            Ok(())
-        };
-        match self.content {
-            // Of several volumes the first time stands for all.
-            Content::Still(shown) | Content::Together(shown, _) => {
-                for frames in self.frames.values() {
-                    draw(shown.looked_at(), &shown.parts(), frames)?;
+            Content::Together(_, together) => {
+                for (done, (&time, frames)) in self.frames.iter().enumerate() {
+                    progress.stage("prepare", done, self.frames.len());
+                    let shown = together.at(time.into())?;
+                    draw(shown.looked_at(), (&shown.parts(), shown.lines()), frames)?;
                 }
             }
             Content::Times(source, bricks) => {
@@ -102,7 +108,7 @@ impl<'a> Union<'a> {
                 for (done, (&time, frames)) in self.frames.iter().enumerate() {
                     progress.stage("prepare", done, self.frames.len());
                     let moment = volumes.at(time.into())?;
-                    draw(moment.looked_at(), &alone, frames)?;
+                    draw(moment.looked_at(), (&alone, None), frames)?;
                 }
             }
         }

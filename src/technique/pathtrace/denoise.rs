@@ -8,22 +8,22 @@
 //! a'(p) = c_0, where c makes least the sum of w (a_q - c x_q)^2      w: how alike colours are; x_q = (1, q - p, g'_q - g'_p)
 //! ```
 //!
-//! Sums are over q in 15 x 15 around p. Weights by one half ([`alike`]) filter the other, so that what is noise in both is not kept
+//! Sums are over q in 15 x 15 around p. Weights by one half ([`patch_weights`]) filter the other, so that what is noise in both is not kept
 //! for detail. Guides ([`super::guides`]) say how colours change from pixel to pixel: in a plane over them an edge is as sharp as
 //! theirs, and a slope is not washed out ([`fit`]). Colours are filtered twice, fine detail kept or more noise taken out, and what is
 //! nearer to the half that it was not made of is chosen ([`choice`]). A picture without noise stays as it is.
 
-mod alike;
 mod choice;
 mod fit;
+mod patch_weights;
 mod planes;
 mod rows;
 mod tiles;
 
 use super::guides::{Compared, Guide, NUMBERS, compared};
-use alike::{Alike, Comparison, Shifted};
 use choice::chosen;
 use fit::Fits;
+use patch_weights::{Comparison, PatchWeights, Shifted};
 use planes::{Plane, planes, variance};
 use std::ops::Range;
 use tiles::{Tile, in_tiles};
@@ -44,23 +44,25 @@ const BY_COLORS: [Comparison; 2] = [by_colors(0.5), by_colors(1.0)];
 
 const fn by_colors(strength: f32) -> Comparison {
     Comparison {
-        groups: &[0..1, 1..2, 2..3, 3..4],
+        numbers: 0..COLORS,
+        together: 1,
         strength,
         least: 1e-10,
     }
 }
 
 /// Of one guide, whose numbers count together.
-const fn by_guide(groups: &'static [Range<usize>]) -> Comparison {
+const fn by_guide(numbers: Range<usize>) -> Comparison {
     Comparison {
-        groups,
+        together: numbers.end - numbers.start,
+        numbers,
         strength: 1.0,
         least: 1e-3,
     }
 }
 
 /// Albedo, normal and depth.
-const BY_GUIDES: [Comparison; 3] = [by_guide(&[0..3]), by_guide(&[3..6]), by_guide(&[6..7])];
+const BY_GUIDES: [Comparison; 3] = [by_guide(0..3), by_guide(3..6), by_guide(6..7)];
 
 /// The mean of two pictures of `width` pixels a row, of different paths and as many, without their noise; with what guides
 /// each of them.
@@ -98,7 +100,7 @@ struct Noisy<'h> {
 impl Noisy<'_> {
     /// One half, by the other.
     fn fitted(&self, half: usize, comparison: &Comparison) -> Vec<[f32; COLORS]> {
-        let alike = Alike {
+        let weights = PatchWeights {
             values: &self.planes[1 - half],
             variances: &self.variances,
             comparison,
@@ -110,7 +112,7 @@ impl Noisy<'_> {
             if !tile.pixels().any(is_noisy) {
                 return tile.pixels().map(|at| self.halves[half][at]).collect();
             }
-            let fits = fits(&alike, &self.planes[half], &self.guides, tile);
+            let fits = fits(&weights, &self.planes[half], &self.guides, tile);
             let filtered = tile.pixels().enumerate().map(|(i, at)| {
                 if !is_noisy(at) {
                     return self.halves[half][at];
@@ -124,11 +126,11 @@ impl Noisy<'_> {
 }
 
 /// Planes through the colours of a half, for the pixels of a tile.
-fn fits(alike: &Alike, of: &[Plane], guides: &[Plane], tile: &Tile) -> Fits {
+fn fits(weights: &PatchWeights, of: &[Plane], guides: &[Plane], tile: &Tile) -> Fits {
     let count = tile.columns.len();
     let mut fits = Fits::new(UNKNOWNS, tile.len());
     let mut x = vec![vec![1.0_f32; count]; UNKNOWNS];
-    alike.in_windows(tile, |shifted| {
+    weights.in_windows(tile, |shifted| {
         let [own, other] = rows_of(tile, shifted);
         let place = shifted.shift.map(|n| n as f32 / WINDOW as f32 - 1.0);
         x[1].fill(place[0]);
@@ -159,13 +161,13 @@ fn filtered_guides(halves: &[Vec<Compared>; 2], size: [usize; 2]) -> Vec<Compare
         let mut filtered = vec![[0.0; NUMBERS]; tile.len()];
         for (half, by) in [(0, 1), (1, 0)] {
             for comparison in &BY_GUIDES {
-                let alike = Alike {
+                let weights = PatchWeights {
                     values: &planes[by],
                     variances: &variances,
                     comparison,
                     size,
                 };
-                add_means(&mut filtered, &alike, &planes[half], tile);
+                add_means(&mut filtered, &weights, &planes[half], tile);
             }
         }
         filtered
@@ -173,15 +175,15 @@ fn filtered_guides(halves: &[Vec<Compared>; 2], size: [usize; 2]) -> Vec<Compare
 }
 
 /// Adds half of the weighted means of one guide.
-fn add_means(filtered: &mut [Compared], alike: &Alike, of: &[Plane], tile: &Tile) {
+fn add_means(filtered: &mut [Compared], weights: &PatchWeights, of: &[Plane], tile: &Tile) {
     let count = tile.columns.len();
-    let numbers = alike.comparison.groups[0].clone();
+    let numbers = weights.comparison.numbers.clone();
     let mut sums = vec![[0.0_f32; NUMBERS]; tile.len()];
-    let mut weights = vec![0.0_f32; tile.len()];
-    alike.in_windows(tile, |shifted| {
+    let mut totals = vec![0.0_f32; tile.len()];
+    weights.in_windows(tile, |shifted| {
         let [_, [column, row]] = rows_of(tile, shifted);
         let own = shifted.row * count;
-        for (sum, weight) in weights[own..].iter_mut().zip(shifted.weights) {
+        for (sum, weight) in totals[own..].iter_mut().zip(shifted.weights) {
             *sum += weight;
         }
         for n in numbers.clone() {
@@ -191,9 +193,9 @@ fn add_means(filtered: &mut [Compared], alike: &Alike, of: &[Plane], tile: &Tile
             }
         }
     });
-    for ((pixel, sum), weight) in filtered.iter_mut().zip(&sums).zip(&weights) {
+    for ((pixel, sum), total) in filtered.iter_mut().zip(&sums).zip(&totals) {
         for n in numbers.clone() {
-            pixel[n] += 0.5 * sum[n] / weight;
+            pixel[n] += 0.5 * sum[n] / total;
         }
     }
 }

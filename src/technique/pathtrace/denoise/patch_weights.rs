@@ -15,8 +15,10 @@ const MOST_APART: f32 = 6.9;
 
 /// How numbers of pixels are compared.
 pub(super) struct Comparison {
-    /// Numbers whose squares are added before they are compared with their variances.
-    pub groups: &'static [Range<usize>],
+    /// Which numbers.
+    pub numbers: Range<usize>,
+    /// Squares of so many are added, a group, before they are compared with their variances.
+    pub together: usize,
     /// k: how far pixels may differ, in standard deviations of their difference.
     pub strength: f32,
     /// Squares of differences that are none.
@@ -24,7 +26,7 @@ pub(super) struct Comparison {
 }
 
 /// What weights are made of: numbers and their variances.
-pub(super) struct Alike<'p> {
+pub(super) struct PatchWeights<'p> {
     pub values: &'p [Plane],
     pub variances: &'p [Plane],
     pub comparison: &'p Comparison,
@@ -41,7 +43,7 @@ pub(super) struct Shifted<'w> {
     pub weights: &'w [f32],
 }
 
-impl Alike<'_> {
+impl PatchWeights<'_> {
     /// Tells `each` the weights of all pixels of a tile with all of their windows; rows without any are left out.
     pub fn in_windows(&self, tile: &Tile, mut each: impl FnMut(&Shifted)) {
         let [width, height] = self.size;
@@ -93,9 +95,12 @@ impl Alike<'_> {
     fn compare(&self, [x, y]: [usize; 2], [across, down]: [usize; 2], apart: &mut Apart) {
         let count = apart.squares.len();
         apart.squares.fill(0.0);
-        for group in self.comparison.groups {
+        let Comparison {
+            numbers, together, ..
+        } = self.comparison;
+        for first in numbers.clone().step_by(*together) {
             apart.clear();
-            for n in group.clone() {
+            for n in first..first + together {
                 let [values, variances] = [&self.values[n], &self.variances[n]].map(|plane| {
                     let own = plane.row(y + WINDOW, x + WINDOW, count);
                     [own, plane.row(y + down, x + across, count)]
@@ -142,7 +147,7 @@ impl Apart {
     }
 
     fn divide(&mut self, by: &Comparison) {
-        let weight = 1.0 / by.groups.len() as f32;
+        let weight = by.together as f32 / by.numbers.len() as f32;
         let strength = by.strength * by.strength;
         let count = self.squares.len();
         let (above, below) = (&self.above[..count], &self.below[..count]);
@@ -168,16 +173,17 @@ mod tests {
     #[test]
     fn what_noise_explains_is_not_apart() {
         let numbers = [[0.5_f32; 1], [0.7; 1]];
-        for group in [0..1, 0..3] {
+        for together in [1, 3] {
             let comparison = Comparison {
-                groups: &[0..1],
+                numbers: 0..together,
+                together,
                 strength: 1.0,
                 least: 1e-3,
             };
             // Each number is apart by its standard deviation, and by five of them.
             let [even, clear] = [0.02_f32, 0.0008].map(|variance| {
                 let mut apart = Apart::new(1);
-                for _ in group.clone() {
+                for _ in 0..together {
                     apart.add([&numbers[0], &numbers[1]], [&[variance]; 2]);
                 }
                 apart.divide(&comparison);
