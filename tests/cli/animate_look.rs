@@ -113,6 +113,20 @@ fn across(folder: &Folder, name: &str) -> [f64; 2] {
     [left / width, (right + 1.0) / width]
 }
 
+/// Of voxels that are classified first too: a cloud drifts and grows from the first time to the last.
+#[test]
+fn volumes_that_are_read_together_are_framed_at_all_times() {
+    let folder = Folder::new();
+    let ran = folder.run(
+        "animate phantom:storm,n=16,times=3 --times --preclassified --view front --size 60x40 -o s%d.png",
+    );
+    ran.assert_done();
+    for name in ["s0.png", "s2.png"] {
+        let [left, right] = across(&folder, name);
+        assert!(left > 0.0 && right < 1.0, "{name}: {left} {right}");
+    }
+}
+
 #[test]
 fn a_camera_that_stands_still_frames_what_is_visible_in_all_frames() {
     let folder = Folder::new();
