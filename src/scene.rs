@@ -314,11 +314,15 @@ impl<'a> Scene<'a> {
         self.settings.absorption(function, self.default_length())
     }
 
-    /// Tells the parameters what paths want to know of the volume and its function.
+    /// Tells the parameters what paths want to know of the volume and its function, for a device that ends loops after so many turns.
     ///
     /// # Errors
     /// Where matter is too dense for paths.
-    pub(crate) fn tell_paths(&self, frame: &mut Frame) -> Result<(), technique::Error> {
+    pub(crate) fn tell_paths(
+        &self,
+        frame: &mut Frame,
+        max_loop_turns: u32,
+    ) -> Result<(), technique::Error> {
         let (true, Some(function)) = (self.settings.technique.traces_paths(), self.transfer) else {
             return Ok(());
         };
@@ -335,8 +339,8 @@ impl<'a> Scene<'a> {
                 most.sum()
             }),
         };
-        self.settings.path.fields_of(&medium)?.tell(frame);
-        Ok(())
+        let fields = self.settings.path.fields_of(&medium)?;
+        fields.tell(frame, max_loop_turns)
     }
 
     /// Between which values samples look alike, where steps adapt to that.

@@ -1,6 +1,6 @@
 //! What to do about numbers and combinations that a technique refuses, by the names in its errors.
 
-use crate::technique::Error;
+use crate::technique::{Error, pathtrace::SHARE_OF_TURNS};
 
 /// The hint for such an error.
 pub fn hint(error: &Error) -> &'static str {
@@ -19,8 +19,8 @@ fn of_range(name: &str) -> &'static str {
         "paths a pixel" => "--spp 16 is enough, or leave out --denoise-picture",
         "the noise" => "--noise 0.01 ends where the error is 1 %",
         "seconds" => "--seconds 60 ends after a minute",
-        "tentative collisions in a macro cell" => {
-            "a smaller --density-scale: matter with 375 collisions in a voxel is opaque"
+        "tentative collisions in a macro cell" | SHARE_OF_TURNS => {
+            "a smaller --density-scale, by as much as that is too large: such matter is opaque"
         }
         "the density scale" => "--density-scale 1 leaves extinction as it is",
         "the scale of albedos" => "--albedo 1 leaves albedos as they are, 0 scatters nothing",

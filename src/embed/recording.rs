@@ -292,7 +292,7 @@ impl Renderer {
             |mut recording: Recording, depth_access: DepthAccess| -> Result<BrickPass, Error> {
                 recording.skip(skip);
                 if let (Some(of_paths), Some(traced)) = (&self.function.paths, &traced) {
-                    of_paths.fields.tell(&mut recording.frame);
+                    of_paths.fields.tell(&mut recording.frame, limit)?;
                     traced.tell(&mut recording.frame);
                 }
                 match (depth, depth_access) {

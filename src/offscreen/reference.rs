@@ -389,7 +389,7 @@ impl<'a, R: Real> ReferenceRays<'a, R> {
             frame.emission_point_count = points.emission_count;
             frame.extinction_is_colored = is_colored.into();
         }
-        scene.tell_paths(&mut frame)?;
+        scene.tell_paths(&mut frame, u32::MAX)?;
         if let Some(field) = field {
             view.tell_field(field, &mut frame);
         }

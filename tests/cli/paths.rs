@@ -113,6 +113,10 @@ fn what_paths_do_not_go_with_is_refused_by_name() {
         ("--density-scale 0", "--density-scale"),
         ("--density-scale -1", "--density-scale"),
         ("--density-scale 1e6", "collisions in a macro cell"),
+        (
+            "--density-scale 1e6 --device reference",
+            "collisions in a macro cell",
+        ),
         ("--light-size 120", "90 degrees"),
         ("--point-light 1,2", "X,Y,Z"),
         ("--point-light 1,2,3,1,1,1,0", "noise never ends"),

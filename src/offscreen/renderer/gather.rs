@@ -84,9 +84,10 @@ impl Renderer<'_> {
             .behind
             .as_ref()
             .and_then(|behind| behind.ends(scene.settings));
+        let max_loop_turns = self.device.gpu().limits().max_loop_turns;
         for recording in &mut recordings {
             recording.skip(skip);
-            scene.tell_paths(&mut recording.frame)?;
+            scene.tell_paths(&mut recording.frame, max_loop_turns)?;
             if leaves_path_layers {
                 // Of tiles without matter too.
                 recording.frame.draws_all_tiles = 1;

@@ -252,9 +252,15 @@ pub(crate) fn most_extinction(function: &TransferFunction, absorption: Absorptio
 const EMISSION_SPACINGS: f64 = 8.0;
 
 /// Tentative collisions on a side of a macro cell, in the mean, where it holds the densest matter: 375 in a voxel, through which
-/// no light comes. What has more of them takes very long where dense matter ends within a cell, and longer than drivers let a loop last
-/// (as many turns a path has where nothing else takes some, [`MOST_TURNS`]).
+/// no light comes. What has more of them takes very long where dense matter ends within a cell.
 const MOST_IN_CELL: f64 = 3000.0;
+
+/// How many turns of a path a way through such a cell takes at most where drivers end loops ([`MOST_TURNS`]): the way of the eye and the
+/// one of its light come through it.
+const MOST_OF_TURNS: f64 = 0.5;
+/// What that is called where it is too many.
+pub(crate) const SHARE_OF_TURNS: &str =
+    "the share of a path's turns that dense matter takes in one macro cell";
 
 /// f32 rounds a table's entries and the products with them.
 const MAJORANT_SLACK: f64 = 1.0 + 1e-5;
@@ -267,6 +273,8 @@ pub(crate) struct MediumFields {
     turns: [u32; 2],
     paths_of_loop: u32,
     surface: f32,
+    /// Tentative collisions in a macro cell.
+    in_cell: f64,
 }
 
 impl PathTracing {
@@ -340,6 +348,7 @@ impl PathTracing {
             majorants,
             turns: [event, collision],
             paths_of_loop: paths_of_loop(Some(function)),
+            in_cell,
             surface: match range > 0.0 {
                 true => (self.surface * smallest_spacing / range) as f32,
                 false => 0.0,
@@ -349,8 +358,11 @@ impl PathTracing {
 }
 
 impl MediumFields {
-    /// Tells the parameters.
-    pub(crate) fn tell(&self, frame: &mut Frame) {
+    /// Tells the parameters, for a device that ends loops after so many turns.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] where matter is so dense that it would end paths before they are done.
+    pub(crate) fn tell(&self, frame: &mut Frame, max_loop_turns: u32) -> Result<(), Error> {
         let majorants = &self.majorants;
         frame.path_bin_first = majorants.first;
         frame.path_bin_scale = majorants.scale;
@@ -364,6 +376,10 @@ impl MediumFields {
         let most = most.map_or(0, |(_, turns)| *turns);
         frame.path_rounds = most / self.paths_of_loop / round;
         frame.path_surface = self.surface;
+        let share = self.in_cell / f64::from(frame.path_rounds * TURNS_OF_WAY);
+        let is_done = max_loop_turns == u32::MAX || share <= MOST_OF_TURNS;
+        let wanted = "at most 0.5 on a driver that ends long loops";
+        Error::unless(is_done, SHARE_OF_TURNS, wanted, share)
     }
 }
 
