@@ -291,6 +291,50 @@ mod tests {
         }
     }
 
+    /// A step that only the half has which is filtered: the other one says that all pixels are alike.
+    #[test]
+    fn one_half_is_filtered_by_the_other() {
+        let size = [WIDTH, HEIGHT];
+        let red = |i: usize| if i % WIDTH < 20 { 0.0 } else { 1.0 };
+        let step: Vec<_> = (0..WIDTH * HEIGHT)
+            .map(|i| [red(i), 0.0, 0.0, 1.0])
+            .collect();
+        let even = vec![[0.5, 0.0, 0.0, 1.0]; WIDTH * HEIGHT];
+        let variance = vec![[1e-4; COLORS]; WIDTH * HEIGHT];
+        let noisy = Noisy {
+            halves: [&step, &even],
+            planes: [planes(&step, size), planes(&even, size)],
+            variances: planes(&variance, size),
+            variance,
+            guides: planes(&vec![[0.0; NUMBERS]; WIDTH * HEIGHT], size),
+            size,
+        };
+        // A plane through a window around its middle has the mean there: of 15 columns 7 are beyond the step.
+        let found = noisy.fitted(0, &BY_COLORS[0])[15 * WIDTH + 19][0];
+        assert!((found - 7.0 / 15.0).abs() < 1e-5, "{found}");
+        let unmixed = noisy.fitted(1, &BY_COLORS[0])[15 * WIDTH + 19][0];
+        assert!((unmixed - 0.5).abs() < 1e-5, "{unmixed}");
+    }
+
+    /// Means of 0 and of 1 are as often below as over that.
+    #[test]
+    fn no_colour_is_below_0_and_no_alpha_over_1() {
+        let halves = [1, 2].map(|seed| -> Vec<[f32; 4]> {
+            let numbers =
+                (0..(WIDTH * HEIGHT) as u32).map(|i| random_numbers::<f32>([i, seed, 0, 0]));
+            let around = |[r, g, b, a]: [f32; 4]| [r - 0.5, g - 0.5, b - 0.5, a + 0.5];
+            numbers.map(around).collect()
+        });
+        let none = none();
+        let found = denoised([&halves[0], &halves[1]], [&none; 2], WIDTH);
+        for [r, g, b, alpha] in found {
+            assert!(
+                r.min(g).min(b) >= 0.0 && alpha <= 1.0,
+                "{r} {g} {b} {alpha}"
+            );
+        }
+    }
+
     /// The square of [`noisy`] by its albedo, its normal and its depth, each as much as this, with even noise of this width.
     fn guides(seed: u32, noise: f32, contrast: f32) -> Vec<Guide> {
         let pixel = |i: usize| {

@@ -168,7 +168,41 @@ impl Apart {
 
 #[cfg(test)]
 mod tests {
+    use super::super::{planes::planes, tiles::in_tiles};
     use super::*;
+
+    /// Where all pixels are alike, each of a window counts as one, and none outside.
+    #[test]
+    fn windows_end_at_the_picture() {
+        let size = [70, 18];
+        let even = planes(&vec![[0.5_f32]; size[0] * size[1]], size);
+        let weights = PatchWeights {
+            values: &even,
+            variances: &planes(&vec![[0.0_f32]; size[0] * size[1]], size),
+            comparison: &Comparison {
+                numbers: 0..1,
+                together: 1,
+                strength: 1.0,
+                least: 1e-3,
+            },
+            size,
+        };
+        let sums = in_tiles(size, |tile| {
+            let mut sums = vec![0.0_f32; tile.len()];
+            weights.in_windows(tile, |shifted| {
+                let row = &mut sums[shifted.row * tile.columns.len()..];
+                for (sum, weight) in row.iter_mut().zip(shifted.weights) {
+                    *sum += weight;
+                }
+            });
+            sums
+        });
+        let inside = |i: usize, side: usize| 1 + i.min(WINDOW) + (side - 1 - i).min(WINDOW);
+        for (at, sum) in sums.into_iter().enumerate() {
+            let wanted = inside(at % size[0], size[0]) * inside(at / size[0], size[1]);
+            assert_eq!(sum, wanted as f32, "pixel {at}");
+        }
+    }
 
     #[test]
     fn what_noise_explains_is_not_apart() {
